@@ -71,7 +71,9 @@ macro(softcell_install_component component)
       LIBS -no-pie -Wl,--no-as-needed -L\${prefix}/${CMAKE_INSTALL_LIBDIR}/softcell -lsoftcell_low_memory -lspe2
         -Wl,-rpath,\${prefix}/${CMAKE_INSTALL_LIBDIR}/softcell)
     install(FILES ${PROJECT_SOURCE_DIR}/ppu/libspe2/include/libspe2.h ${PROJECT_SOURCE_DIR}/ppu/libspe2/include/libspe2-types.h
-      ${PROJECT_SOURCE_DIR}/ppu/libspe2/include/cbea_map.h TYPE INCLUDE COMPONENT development)
+      ${PROJECT_SOURCE_DIR}/ppu/libspe2/include/cbea_map.h ${PROJECT_SOURCE_DIR}/ppu/libspe2/include/ppu_intrinsics.h
+      ${PROJECT_SOURCE_DIR}/ppu/libspe2/include/libmisc.h ${PROJECT_SOURCE_DIR}/ppu/libspe2/include/malloc_align.h
+      ${PROJECT_SOURCE_DIR}/ppu/libspe2/include/free_align.h TYPE INCLUDE COMPONENT development)
     softcell_install_pkg_config(libspe2 "the SPE Runtime Management Library" LIBS -lspe2)
   elseif("${component}" STREQUAL "render")
     softcell_install_libraries(render glad render)

@@ -29,9 +29,10 @@ else()
   list(APPEND SOFTCELL_KERNEL_FLAGS -Wno-unknown-warning-option)
 endif()
 
-# And the C++ sources of kernels and programs besides.
+# And the C++ sources of kernels and programs besides. One thread runs in a local store: static variables of functions need no locks.
+set(SOFTCELL_KERNEL_CXX_FLAGS -fno-threadsafe-statics)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-  set(SOFTCELL_KERNEL_CXX_FLAGS
+  list(APPEND SOFTCELL_KERNEL_CXX_FLAGS
     # Addresses in 64-bit registers take no prefix bytes.
     -maddress-mode=long
     # No gcse: it spills more than it saves here, and a real SPU g++ 9 needs to go without it too (it miscompiles). No scev-cprop: a
@@ -39,7 +40,7 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     -fno-tree-loop-distribute-patterns -fno-gcse -fno-tree-scev-cprop)
 else()
   # Clang has no address mode, and unrolls less to make up for the prefix bytes.
-  set(SOFTCELL_KERNEL_CXX_FLAGS "SHELL:-mllvm -unroll-threshold=100")
+  list(APPEND SOFTCELL_KERNEL_CXX_FLAGS "SHELL:-mllvm -unroll-threshold=100")
 endif()
 
 # How the same sources are compiled for the SPU, by GCC 7 to 9.

@@ -56,7 +56,11 @@ Evidence evidence(Rule rule) { return row(rule).evidence; }
 
 std::string Fault::message() const {
   std::string text = spe < 0 ? "SPE unknown" : "SPE " + std::to_string(spe);
-  text += ", kernel " + (kernel.empty() ? "unknown" : kernel);
+  if (is_of_proxy) {
+    text += ", proxy command of the PPU side";
+  } else {
+    text += ", kernel " + (kernel.empty() ? "unknown" : kernel);
+  }
   if (!place.empty()) text += ", " + place;
   text += ": ";
   text += name(rule);

@@ -38,6 +38,7 @@ int spe_callback_handler_register(void* handler, unsigned int callnum, unsigned 
       if (callnum < kLibraries) return fail(EACCES);
       return slot(callnum).compare_exchange_strong(before, handler) ? 0 : fail(EACCES);
     case SPE_CALLBACK_UPDATE:
+      if (callnum < kLibraries) return fail(EACCES);
       before = slot(callnum).load();
       while (before != nullptr && !slot(callnum).compare_exchange_weak(before, handler)) {
       }

@@ -17,6 +17,7 @@ using softcell::libspe2::fail;
 using softcell::libspe2::Machine;
 using softcell::libspe2::Objects;
 using softcell::libspe2::shielded;
+using softcell::libspe2::Waits;
 
 namespace {
 
@@ -151,13 +152,17 @@ int spe_event_handler_deregister(spe_event_handler_ptr_t evhandler, spe_event_un
 }
 
 int spe_event_wait(spe_event_handler_ptr_t evhandler, spe_event_unit_t* events, int max_events, int timeout) {
-  return shielded(-1, [&] {
+  const auto work = [&] {
     const auto handler = Objects<Handler>::all().find(evhandler);
     if (handler == nullptr) return fail(ESRCH);
     if (events == nullptr || max_events < 1 || timeout < -1) return fail(EINVAL);
+    struct Waiting {  // also of a thread that is cancelled
+      std::atomic<int>& count;
+      ~Waiting() { count.fetch_sub(1); }
+    };
     handler->waiting.fetch_add(1);
-    const int taken = wait_for_events(*handler, events, max_events, timeout);
-    handler->waiting.fetch_sub(1);
-    return taken;
-  });
+    const Waiting waiting{handler->waiting};
+    return wait_for_events(*handler, events, max_events, timeout);
+  };
+  return shielded(-1, work, Waits::kForEvents);
 }

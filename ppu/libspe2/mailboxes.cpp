@@ -8,6 +8,7 @@
 
 using softcell::libspe2::fail;
 using softcell::libspe2::Machine;
+using softcell::libspe2::Waits;
 using softcell::libspe2::with_context;
 using softcell::ls_sim::ContextState;
 
@@ -58,7 +59,7 @@ int spe_out_mbox_status(spe_context_ptr_t spe) {
 }
 
 int spe_in_mbox_write(spe_context_ptr_t spe, unsigned int* mbox_data, int count, unsigned int behavior) {
-  return with_context(spe, [&](spe_context& context) {
+  const auto work = [&](spe_context& context) {
     if (mbox_data == nullptr || count < 1 || !is_behavior(behavior)) return fail(EINVAL);
     const auto write = [&](int index) {
       const std::lock_guard lock(context.in_mbox);  // between the question and the write nobody else writes
@@ -68,7 +69,8 @@ int spe_in_mbox_write(spe_context_ptr_t spe, unsigned int* mbox_data, int count,
     };
     return move_values(context, count, behavior, write,
                        [](const ContextState& state) { return state.in_mbox_free != 0; });
-  });
+  };
+  return with_context(spe, work, Waits::kForEvents);
 }
 
 int spe_in_mbox_status(spe_context_ptr_t spe) {
@@ -77,7 +79,7 @@ int spe_in_mbox_status(spe_context_ptr_t spe) {
 }
 
 int spe_out_intr_mbox_read(spe_context_ptr_t spe, unsigned int* mbox_data, int count, unsigned int behavior) {
-  return with_context(spe, [&](spe_context& context) {
+  const auto work = [&](spe_context& context) {
     if (mbox_data == nullptr || count < 1 || !is_behavior(behavior)) return fail(EINVAL);
     const auto read = [&](int index) {
       const auto value = context.problem_state().read_out_intr_mbox();
@@ -86,7 +88,8 @@ int spe_out_intr_mbox_read(spe_context_ptr_t spe, unsigned int* mbox_data, int c
     };
     return move_values(context, count, behavior, read,
                        [](const ContextState& state) { return state.out_intr_mbox != 0; });
-  });
+  };
+  return with_context(spe, work, Waits::kForEvents);
 }
 
 int spe_out_intr_mbox_status(spe_context_ptr_t spe) {

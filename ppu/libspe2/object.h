@@ -11,12 +11,14 @@
 #include <memory>
 #include <mutex>
 #include <new>
+#include <optional>
 #include <unordered_map>
 #include <utility>
 
 #include "libspe2.h"
 #include "machine.h"
 #include "softcell/dma/mfc_command.h"
+#include "softcell/ls_sim/cancellation.h"
 #include "softcell/ls_sim/image.h"
 #include "softcell/ls_sim/spe_contexts.h"
 
@@ -48,6 +50,7 @@ struct spe_context {
   struct Registers {
     softcell::dma::MfcCommand command;
     unsigned int query_mask = 0;
+    std::uint32_t spu_status = 0;  ///< of the last stop
   };
 
   std::mutex mutex;  ///< guards all below
@@ -116,22 +119,40 @@ inline int fail(int error) {
   return -1;
 }
 
-/// While the object lives, the calling thread is not cancelled: its place in a wait must not be left.
+/// While the object lives, the calling thread is not cancelled, but where Waits says so: its place in a wait must not be
+/// left.
 class NotCancelled {
  public:
-  NotCancelled() { pthread_setcancelstate(PTHREAD_CANCEL_DISABLE, &before_); }
-  ~NotCancelled() { pthread_setcancelstate(before_, nullptr); }
+  NotCancelled() {
+    pthread_setcancelstate(PTHREAD_CANCEL_DISABLE, &before_);
+    pthread_setcanceltype(PTHREAD_CANCEL_DEFERRED, &type_before_);
+  }
+  ~NotCancelled() {
+    pthread_setcanceltype(type_before_, nullptr);
+    pthread_setcancelstate(before_, nullptr);
+  }
   NotCancelled(const NotCancelled&) = delete;
   NotCancelled& operator=(const NotCancelled&) = delete;
 
+  /// Whether the caller of the library may be cancelled, at cancellation points or anywhere.
+  bool allowed() const { return before_ == PTHREAD_CANCEL_ENABLE; }
+  bool allowed_anywhere() const { return allowed() && type_before_ == PTHREAD_CANCEL_ASYNCHRONOUS; }
+
  private:
-  int before_ = 0;
+  int before_ = 0, type_before_ = 0;
 };
+
+/// What a function of the library waits for, so that a thread may be cancelled within. As on the Cell's Linux a run is no cancellation
+/// point: only a thread that may be cancelled anywhere leaves it before it has stopped.
+enum class Waits : std::uint8_t { kNo, kForEvents, kForARun };
 
 /// work(), which may throw, for a caller in C. @param failure  the result then, with errno set.
 template <class Result, class Work>
-Result shielded(Result failure, Work&& work) {
+Result shielded(Result failure, Work&& work, Waits waits = Waits::kNo) {
   const NotCancelled here;
+  std::optional<ls_sim::MayBeCancelled> point;
+  if (waits == Waits::kForEvents ? here.allowed() : waits == Waits::kForARun && here.allowed_anywhere())
+    point.emplace();
   try {
     return work();
   } catch (const std::bad_alloc&) {
@@ -145,11 +166,14 @@ Result shielded(Result failure, Work&& work) {
 
 /// work(*context) of a context that there is, else ESRCH.
 template <class Work>
-int with_context(spe_context_ptr_t spe, Work&& work) {
-  return shielded(-1, [&] {
-    const std::shared_ptr<spe_context> context = context_of(spe);
-    return context == nullptr ? fail(ESRCH) : work(*context);
-  });
+int with_context(spe_context_ptr_t spe, Work&& work, Waits waits = Waits::kNo) {
+  return shielded(
+      -1,
+      [&] {
+        const std::shared_ptr<spe_context> context = context_of(spe);
+        return context == nullptr ? fail(ESRCH) : work(*context);
+      },
+      waits);
 }
 
 }  // namespace softcell::libspe2

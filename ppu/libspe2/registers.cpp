@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <mutex>
+#include <string>
 
 #include "libspe2.h"
 #include "object.h"
@@ -97,7 +98,7 @@ std::uint32_t load(spe_context& context, std::uint32_t offset) {
     case kMboxStatus:
       return context.problem_state().mbox_status();
     case kSpuStatus:
-      return context.spe->state().runs ? kRunning : 0;
+      return context.spe->state().runs ? kRunning : registers.spu_status;
     default:
       return 0;
   }
@@ -139,22 +140,33 @@ bool is_loaded(std::uint32_t offset) {
   }
 }
 
-bool access_address(std::uint64_t address, bool is_store, std::uint32_t& value) {
+std::string offset_in_problem_state(std::uint32_t offset) {
+  return base::hex(offset - dma::kLocalStoreBytes);
+}
+
+bool access_address(std::uint64_t address, dma::HostAccess access, std::uint32_t& value) {
   const std::uint64_t base = address / dma::kLocalStoreStrideBytes * dma::kLocalStoreStrideBytes;
   const auto offset = static_cast<std::uint32_t>(address - base);
   const auto context = Objects<spe_context>::all().find_if([&](spe_context& each) {
     return each.spe != nullptr && each.problem_state().local_store_ea().value == base;
   });
   if (context == nullptr || offset < dma::kLocalStoreBytes) return false;
-  return access_register(*context, offset, is_store, value);
+  if (access == dma::HostAccess::kUnknown) {
+    Machine::complain("the program accesses problem state at offset " + offset_in_problem_state(offset) +
+                      " of an SPE context by an instruction that softcell does not know; load the register "
+                      "of 4 bytes into a "
+                      "variable first, or store it from one");
+    return false;
+  }
+  return access_register(*context, offset, access == dma::HostAccess::kStore, value);
 }
 
 }  // namespace
 
 bool access_register(spe_context& context, std::uint32_t offset, bool is_store, std::uint32_t& value) {
   if ((context.flags & SPE_MAP_PS) == 0 || !(is_store ? is_stored(offset) : is_loaded(offset))) {
-    Machine::complain("the program accesses problem state at offset " +
-                      base::hex(offset - dma::kLocalStoreBytes) + " of an SPE context, " +
+    Machine::complain("the program accesses problem state at offset " + offset_in_problem_state(offset) +
+                      " of an SPE context, " +
                       ((context.flags & SPE_MAP_PS) == 0 ? "which was made without SPE_MAP_PS"
                        : is_store                        ? "where no register is that a PC program may write"
                                   : "where no register is that a PC program may read"));

@@ -7,6 +7,7 @@
 #include <mutex>
 #include <optional>
 #include <stdexcept>
+#include <string>
 
 #include "callbacks.h"
 #include "libspe2.h"
@@ -19,6 +20,7 @@ using softcell::dma::Fault;
 using softcell::dma::Rule;
 using softcell::libspe2::fail;
 using softcell::libspe2::Machine;
+using softcell::libspe2::Waits;
 using softcell::libspe2::with_context;
 using softcell::ls_sim::ContextStop;
 using softcell::ls_sim::EntryArguments;
@@ -30,6 +32,7 @@ namespace {
 /// Stops that nobody has read: as many as fit into the pipe that the original keeps them in; then the oldest is lost.
 constexpr std::size_t kMostStops = 65536 / sizeof(spe_stop_info_t);
 constexpr unsigned int kRunFlags = SPE_RUN_USER_REGS | SPE_NO_CALLBACKS;
+constexpr int kNoHandler = -1;                // what a call without a handler has failed with
 constexpr std::uint32_t kCallnumMask = 0xFF;  // [libspe2, newlib] documented
 constexpr int kStatusStopped = 0x2, kStatusHalted = 0x4,
               kStatusCodeShift = 16;  // SPU_Status [CBEA] documented
@@ -54,11 +57,11 @@ Outcome failure(unsigned int reason, int what, int spu_status, int error) {
 Outcome outcome_of(const Fault& fault) {
   switch (fault.rule) {
     case Rule::kKernelHalt:
-      return failure(SPE_RUNTIME_ERROR, SPE_SPU_HALT, kStatusHalted, EIO);
+      return failure(SPE_RUNTIME_ERROR, SPE_SPU_HALT, kStatusHalted, EFAULT);
     case Rule::kIllegalInstruction:
-      return failure(SPE_RUNTIME_ERROR, SPE_SPU_INVALID_INSTR, SPE_SPU_INVALID_INSTR, EIO);
+      return failure(SPE_RUNTIME_ERROR, SPE_SPU_INVALID_INSTR, SPE_SPU_INVALID_INSTR, EFAULT);
     case Rule::kIllegalChannel:
-      return failure(SPE_RUNTIME_ERROR, SPE_SPU_INVALID_CHANNEL, SPE_SPU_INVALID_CHANNEL, EIO);
+      return failure(SPE_RUNTIME_ERROR, SPE_SPU_INVALID_CHANNEL, SPE_SPU_INVALID_CHANNEL, EFAULT);
     case Rule::kLsaAlignment:
     case Rule::kEaAlignment:
     case Rule::kLowBitsDiffer:
@@ -111,18 +114,27 @@ EntryArguments arguments_of(spe_context_ptr_t spe, unsigned int flags, void* arg
   }
   std::array<std::uint64_t, 6> registers;  // three quadwords; an argument is the first half of its own
   std::memcpy(registers.data(), argp, sizeof registers);
-  return {.spe_id = registers[0], .argp = registers[2], .envp = registers[4]};
+  EntryArguments arguments{.spe_id = registers[0], .argp = registers[2], .envp = registers[4]};
+  std::memcpy(arguments.registers.emplace().data(), argp, sizeof registers);
+  return arguments;
 }
 
 /// Calls the PPU side as long as the program asks for it.
-/// @return  what no callback answers, or the failure of one.
+/// @return  the first stop that is no call, or the failure of a call.
 Outcome answer_calls(spe_context& context, ContextStop& stop, bool callbacks) {
   for (;;) {
     const std::uint32_t code = stop.result.stop_code;
     const bool asks = stop.goes_on && (code & ~kCallnumMask) == kAssistedCalls;
-    auto* const callback = asks && callbacks ? softcell::libspe2::callback_of(code & kCallnumMask) : nullptr;
-    if (callback == nullptr) return outcome_of(stop.result);
-    if (const int result = callback(context.problem_state().local_store().data(), stop.assist.value)) {
+    if (!asks || !callbacks) return outcome_of(stop.result);
+    const std::uint32_t callnum = code & kCallnumMask;
+    auto* const callback = softcell::libspe2::callback_of(callnum);
+    if (callback == nullptr)
+      Machine::complain("an SPE program calls the PPU side by number " + std::to_string(callnum) +
+                        ", for which spe_callback_handler_register() has registered no handler");
+    const int result = callback == nullptr
+                           ? kNoHandler
+                           : callback(context.problem_state().local_store().data(), stop.assist.value);
+    if (result != 0) {
       return failure(SPE_CALLBACK_ERROR, result, static_cast<int>(code << kStatusCodeShift) | kStatusStopped,
                      EFAULT);
     }
@@ -166,6 +178,9 @@ int run(spe_context_ptr_t spe, spe_context& context, unsigned int* entry, unsign
   {
     const std::lock_guard lock(context.mutex);
     context.goes_on = stop->goes_on;
+    // Whoever asks for a command that the MFC cannot execute does not stop by itself.
+    context.registers.spu_status =
+        outcome.info.spu_status < 0 ? 0 : static_cast<std::uint32_t>(outcome.info.spu_status);
     context.next_entry = stop->next.value;
     if ((context.flags & SPE_EVENTS_ENABLE) != 0) {
       if (context.stops.size() == kMostStops) context.stops.pop_front();
@@ -183,7 +198,7 @@ int run(spe_context_ptr_t spe, spe_context& context, unsigned int* entry, unsign
 
 int spe_context_run(spe_context_ptr_t spe, unsigned int* entry, unsigned int runflags, void* argp, void* envp,
                     spe_stop_info_t* stopinfo) {
-  return with_context(spe, [&](spe_context& context) {
+  const auto work = [&](spe_context& context) {
     if (entry == nullptr || (runflags & ~kRunFlags) != 0) return fail(EINVAL);
     if ((runflags & SPE_RUN_USER_REGS) != 0 && argp == nullptr) return fail(EINVAL);
     if (context.busy.exchange(true)) return fail(EBUSY);
@@ -193,7 +208,8 @@ int spe_context_run(spe_context_ptr_t spe, unsigned int* entry, unsigned int run
     };
     const Release release{context.busy};
     return run(spe, context, entry, runflags, argp, envp, stopinfo);
-  });
+  };
+  return with_context(spe, work, Waits::kForARun);
 }
 
 int spe_stop_info_read(spe_context_ptr_t spe, spe_stop_info_t* stopinfo) {

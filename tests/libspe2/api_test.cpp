@@ -237,6 +237,23 @@ TEST(SpeRun, StopInformationIsReadOnce) {
   EXPECT_FAILS(spe_stop_info_read(without, &stop), ENOTSUP);
 }
 
+TEST(SpeRun, AHaltOrAChannelThatThereIsNotIsAnErrorOfTheProgram) {
+  struct Case {
+    std::uint64_t what;
+    int detail, status;
+  };
+  for (const auto& [what, detail, status] :
+       {Case{8, SPE_SPU_HALT, 4}, Case{9, SPE_SPU_INVALID_CHANNEL, 0x40}}) {
+    Context context(&breaks_rules, SPE_MAP_PS);
+    testing::internal::CaptureStderr();
+    EXPECT_FAILS(context.run(what), EFAULT);
+    testing::internal::GetCapturedStderr();
+    EXPECT_EQ(context.stop.stop_reason, static_cast<unsigned>(SPE_RUNTIME_ERROR)) << what;
+    EXPECT_EQ(context.stop.result.spe_runtime_error, detail) << what;
+    EXPECT_EQ(context.stop.spu_status, status) << what;
+  }
+}
+
 TEST(SpeRun, RulesThatAProgramBreaksAreStopReasonsAndMessages) {
   struct Case {
     std::uint64_t what, ea;
@@ -276,6 +293,7 @@ TEST(SpeCallback, IsRegisteredUpdatedAndTakenAway) {
   EXPECT_FAILS(spe_callback_handler_register(handler, 256, SPE_CALLBACK_NEW), EINVAL);
   EXPECT_FAILS(spe_callback_handler_register(handler, 20, 3), EINVAL);
   EXPECT_FAILS(spe_callback_handler_register(handler, 3, SPE_CALLBACK_NEW), EACCES);
+  EXPECT_FAILS(spe_callback_handler_register(handler, 1, SPE_CALLBACK_UPDATE), EACCES);
   EXPECT_FAILS(spe_callback_handler_deregister(3), EACCES);
   EXPECT_FAILS(spe_callback_handler_register(handler, 20, SPE_CALLBACK_UPDATE), ESRCH);
   EXPECT_EQ(spe_callback_handler_register(handler, 20, SPE_CALLBACK_NEW), 0);
@@ -289,13 +307,19 @@ TEST(SpeCallback, IsRegisteredUpdatedAndTakenAway) {
   EXPECT_NULL(spe_callback_handler_query(256), EINVAL);
 }
 
-TEST(SpeCallback, ACallThatNobodyAnswersIsAStop) {
+TEST(SpeCallback, ACallThatNobodyAnswersIsAnErrorOrWithoutCallbacksAStop) {
   ASSERT_EQ(spe_callback_handler_register(reinterpret_cast<void*>(&count_only), 16, SPE_CALLBACK_NEW), 0);
   Context context(&calls);
   EXPECT_EQ(context.run(0, 0, SPE_NO_CALLBACKS), 0x2110);
   EXPECT_EQ(context.stop.stop_reason, static_cast<unsigned>(SPE_STOP_AND_SIGNAL));
   EXPECT_EQ(spe_callback_handler_deregister(16), 0);
-  EXPECT_EQ(context.run(), 0x2110);
+  EXPECT_EQ(context.run(0, 0, SPE_NO_CALLBACKS), 0x2110);
+  testing::internal::CaptureStderr();
+  EXPECT_FAILS(context.run(), EFAULT);
+  EXPECT_NE(testing::internal::GetCapturedStderr().find("number 16, for which"), std::string::npos);
+  EXPECT_EQ(context.stop.stop_reason, static_cast<unsigned>(SPE_CALLBACK_ERROR));
+  EXPECT_EQ(context.stop.result.spe_callback_error, -1);
+  EXPECT_EQ(context.stop.spu_status, 0x2110 << 16 | 2);
 }
 
 // ---- mailboxes and signals
@@ -405,7 +429,8 @@ TEST(SpeProxyDma, MovesBytesAndTellsRules) {
     EXPECT_FAILS(issue(context, 0x1000, from.data(), 17, 1, 0, 0), EINVAL);
     EXPECT_FAILS(issue(context, 0x1000, nullptr, 16, 1, 0, 0), EINVAL);
     EXPECT_FAILS(issue(context, 0x1000, from.data(), 16, 32, 0, 0), EINVAL);
-    EXPECT_NE(testing::internal::GetCapturedStderr().find("size-not-legal"), std::string::npos);
+    const std::string message = testing::internal::GetCapturedStderr();
+    EXPECT_NE(message.find("proxy command of the PPU side: size-not-legal"), std::string::npos) << message;
     EXPECT_FAILS(issue(gone(), 0x1000, from.data(), 16, 1, 0, 0), ESRCH);
   }
 }

@@ -122,6 +122,7 @@ TEST(RunVerb, RefusesWhatMakesNoSense) {
   EXPECT_EQ(run_softcell("run").status, 2);
   EXPECT_EQ(run_softcell("run --dma sometimes -- true").status, 2);
   EXPECT_EQ(run_softcell("run --seeds 3 --dma lazy -- true").status, 2);
+  EXPECT_EQ(run_softcell("run --seeds 3 --dma eager -- true").status, 2);
   EXPECT_EQ(run_softcell("run --seeds 3 --trace t.json -- true").status, 2);
 }
 

@@ -158,6 +158,19 @@ TEST(LoadImage, RefusesAnotherMachine) {
   EXPECT_NE(refusal(file).find("ELF machine 23"), std::string::npos);
 }
 
+TEST(LoadImage, NamesTheMachineOfWhatItRefuses) {
+  const struct {
+    unsigned machine;
+    const char* name;
+  } cases[] = {{EM_PPC64, "ELF machine 21 (a PowerPC"},
+               {EM_SPU << 8, "ELF machine 5888 (that of a real SPU with its bytes swapped"}};
+  for (const auto& [machine, name] : cases) {
+    Bytes file = good_elf();
+    change<Elf32_Ehdr>(file, 0, [&](Elf32_Ehdr& h) { h.e_machine = static_cast<Elf32_Half>(machine); });
+    EXPECT_NE(refusal(file).find(name), std::string::npos) << refusal(file);
+  }
+}
+
 TEST(LoadImage, RefusesAnImageWith64BitPointers) {
   Bytes file = good_elf();
   change<Elf32_Ehdr>(file, 0, [](Elf32_Ehdr& h) { h.e_ident[EI_CLASS] = ELFCLASS64; });

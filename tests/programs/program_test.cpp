@@ -30,7 +30,7 @@
 #define SC_PROGRAMS(X)                                                                  \
   X(vectors) X(language) X(library) X(jumps) X(fails) X(maths) X(counts) X(files)       \
   X(calendar) X(text_numbers) X(characters) X(doubles) X(shared_words) X(prints) X(simd) \
-  X(statics) X(no_parameters)
+  X(traps) X(statics) X(objects) X(destroys) X(no_parameters)
 // clang-format on
 extern "C" {
 #define SC_DECLARE(name)                                                                         \
@@ -72,19 +72,24 @@ struct Ended {
 };
 
 /// Runs it once on one SPE, and what it prints is kept.
-Ended run(std::string_view name, std::span<const std::byte> elf, Findings* findings = nullptr) {
+Ended run(std::string_view name, std::span<const std::byte> elf, const EntryArguments& arguments,
+          Findings* findings = nullptr) {
   const KernelImage image = load_image(name, elf);
   dma::AddressSpace memory;
   SpeGroup group(memory, {.spes = 1, .findings = findings});
   testing::internal::CaptureStdout();
   testing::internal::CaptureStderr();
-  group.start(0, image, kArguments);
+  group.start(0, image, arguments);
   Ended ended;
   ended.result = group.wait(0);
   std::fflush(stdout);
   ended.output = testing::internal::GetCapturedStdout();
   ended.errors = testing::internal::GetCapturedStderr();
   return ended;
+}
+
+Ended run(std::string_view name, std::span<const std::byte> elf, Findings* findings = nullptr) {
+  return run(name, elf, kArguments, findings);
 }
 
 class Programs : public testing::TestWithParam<const char*> {};
@@ -106,7 +111,7 @@ TEST_P(Programs, PassThemCheckedWithoutAFinding) {
 
 INSTANTIATE_TEST_SUITE_P(Each, Programs,
                          testing::Values("vectors", "language", "library", "jumps", "calendar", "characters",
-                                         "doubles", "simd", "statics", "no_parameters"));
+                                         "doubles", "simd", "statics", "objects", "no_parameters"));
 
 TEST(Program, PrintsOnThePpuSide) {
   EXPECT_EQ(run("library", program("library").plain).output, "0 failures of library.c\n");
@@ -123,6 +128,37 @@ TEST(Program, IsNamedByItsOwnLineWhenItFails) {
   const Ended ended = run("maths", program("maths").plain);  // which fetches its work from address 2
   ASSERT_TRUE(ended.result.fault);
   EXPECT_TRUE(ended.result.fault->place.starts_with("maths.c:")) << ended.result.fault->message();
+}
+
+TEST(Program, IsToldWhatItDidWhenTheProcessorStopsIt) {
+  const struct {
+    std::uint64_t how;
+    const char *place, *message;
+  } cases[] = {{1, "traps.c:10", "the smallest integer by -1"},
+               {2, "traps.c:11", "jumped to address 0x00000, by a null pointer to a function"},
+               {3, "traps.c:12", "read from address 0x00000, by a null pointer"}};
+  for (const auto& [how, place, message] : cases) {
+    const Ended ended = run("traps", program("traps").plain, EntryArguments{.argp = how});
+    ASSERT_TRUE(ended.result.fault) << how;
+    EXPECT_EQ(ended.result.fault->place, place) << ended.result.fault->message();
+    EXPECT_NE(ended.result.fault->detail.find(message), std::string::npos) << ended.result.fault->message();
+  }
+}
+
+TEST(Program, EndsItsStaticObjectsTheLastFirst) {
+  for (const auto& flavour : {program("destroys").plain, program("destroys").checked}) {
+    const Ended ended = run("destroys", flavour, EntryArguments{});
+    EXPECT_EQ(ended.output,
+              "first is made\nsecond is made\nthird is made\natexit\na hundred end\nthird ends\nsecond "
+              "ends\nfirst ends\n");
+    EXPECT_EQ(ended.result.status(), 0u) << ended.errors;
+  }
+}
+
+TEST(Program, EndsWithASentenceWhenItsHeapHasNoRoomForAnObject) {
+  const Ended ended = run("destroys", program("destroys").plain, EntryArguments{.argp = 1});
+  EXPECT_EQ(ended.result.stop_code, RunResult::kNormalEnd + 1);
+  EXPECT_EQ(ended.errors, "operator new: the heap of the local store has no room for 262144 bytes\n");
 }
 
 TEST(Program, HoldsPointersThatTheLoaderFits) {

@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -479,6 +480,16 @@ TEST_F(SpuCommand, ExploreComparesNothingOfARunThatDoesNotEnd) {
   EXPECT_NE(run.output.find("deadline-exceeded"), std::string::npos) << run.output;
   EXPECT_NE(run.output.find("nothing to compare"), std::string::npos) << run.output;
   EXPECT_EQ(read_json(folder_ / "e.json")["differs"], false);
+}
+
+TEST_F(SpuCommand, ExploreEndsAtCtrlCWithinARun) {
+  const auto begin = std::chrono::steady_clock::now();
+  const CommandResult run =
+      run_shell("timeout --preserve-status -s INT 0.5 " SOFTCELL_COMMAND " spu explore " + kTalk +
+                " --in-mbox 5 --deadline 30");
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(20));
+  EXPECT_EQ(run.status, 130) << run.output;
+  EXPECT_NE(run.output.find("interrupted; 0 of"), std::string::npos) << run.output;
 }
 
 struct Refusal {

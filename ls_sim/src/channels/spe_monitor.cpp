@@ -1,9 +1,11 @@
 #include "spe_monitor.h"
 
 #include <algorithm>
+#include <chrono>
 #include <thread>
 #include <utility>
 
+#include "cancellable_wait.h"
 #include "softcell/base/assert.h"
 #include "softcell/ls_sim/channel_name.h"
 #include "softcell/ls_sim/source_lines.h"
@@ -172,17 +174,25 @@ bool SpeMonitor::ppu_wait(Lock& lock, const std::function<bool()>& ready, std::o
   ppu_waits_.push_back(&ready);
   if (turn_ == kNobody) settle();
   const auto may_act = [&] { return (turn_ == kNobody || ppu_side_ == PpuSide::kOutside) && ready(); };
-  bool is_ready = true;
-  if (until) {
-    is_ready = ppu_wake_up_.wait_until(lock, *until, may_act);
-  } else {
-    ppu_wake_up_.wait(lock, may_act);
+  // Also where the thread is cancelled in its wait.
+  struct Place {
+    SpeMonitor& monitor;
+    const std::function<bool()>* wait;
+    ~Place() { monitor.leave_ppu_wait(wait); }
+  };
+  const Place place{*this, &ready};
+  while (!may_act()) {
+    if (until && std::chrono::steady_clock::now() >= *until) return false;
+    wait_once(ppu_wake_up_, lock, until);
   }
-  SC_ASSERT(std::ranges::count(ppu_waits_, &ready) == 1, "one of the PPU side's {} waits is lost",
+  return true;
+}
+
+void SpeMonitor::leave_ppu_wait(const std::function<bool()>* wait) {
+  SC_ASSERT(std::ranges::count(ppu_waits_, wait) == 1, "one of the PPU side's {} waits is lost",
             ppu_waits_.size());
-  ppu_waits_.erase(std::find(ppu_waits_.begin(), ppu_waits_.end(), &ready));
+  ppu_waits_.erase(std::find(ppu_waits_.begin(), ppu_waits_.end(), wait));
   if (takes_turns_ && turn_ == kNobody && !ppu_waits_.empty()) settle();  // another thread's wait goes on
-  return is_ready;
 }
 
 void SpeMonitor::ppu_pause(Lock& lock) {

@@ -182,6 +182,7 @@ class SpeMonitor {
   void give_up_turn(int spe);
   void wake_with(int spe, Woken why);
 
+  void leave_ppu_wait(const std::function<bool()>* wait);
   bool ppu_acts() const;
   void settle();
   void draw_turn();

@@ -93,6 +93,7 @@ class Door final : public ProblemState {
   std::optional<dma::Fault> issue_proxy(const dma::MfcCommand& command) override {
     if (auto fault = proxy_.issue(command)) {
       fault->spe = number_;
+      fault->is_of_proxy = true;
       return fault;
     }
     SpeMonitor::Lock lock = monitor_.lock();
@@ -114,7 +115,10 @@ class Door final : public ProblemState {
   std::uint32_t wait_any_proxy(std::uint32_t tag_mask) { return proxy_.wait_any(tag_mask); }
   std::optional<dma::Fault> poll_proxy_fault() {
     auto fault = proxy_.poll_fault();
-    if (fault) fault->spe = number_;
+    if (fault) {
+      fault->spe = number_;
+      fault->is_of_proxy = true;
+    }
     return fault;
   }
   int free_proxy_slots() override {

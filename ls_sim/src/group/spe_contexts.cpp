@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "channels/cancellable_wait.h"
 #include "door.h"
 #include "softcell/base/assert.h"
 #include "softcell/ls_sim/trace.h"
@@ -277,7 +278,18 @@ class Context final : public SpeContext, private StopListener {
   }
 
   ContextStop wait_for_stop(SpeMonitor::Lock& lock) {
-    stopped_.wait(lock, [&] { return phase_ != Phase::kRunning; });
+    // Whoever is cancelled in the wait ends the run.
+    struct End {
+      Context& context;
+      SpeMonitor::Lock& lock;
+      ~End() {
+        if (context.phase_ != Phase::kRunning) return;
+        context.spe_.interrupt();
+        context.stopped_.wait(lock, [&] { return context.phase_ != Phase::kRunning; });
+      }
+    };
+    const End end{*this, lock};
+    while (phase_ == Phase::kRunning) wait_once(stopped_, lock, {});
     return stop_;
   }
 

@@ -203,6 +203,11 @@ RunResult SpeGroup::wait(int spe) {
   return *result;
 }
 
+void SpeGroup::stop_runs() {
+  const SpeMonitor::Lock lock = state_->monitor().lock();
+  state_->threads.stop_runs();
+}
+
 void SpeGroup::wait_until_idle() {
   state_->move_proxies();
   SpeMonitor::Lock lock = state_->monitor().lock();

@@ -82,6 +82,25 @@ std::span<const std::byte> ElfFile::slice(std::uint64_t offset, std::uint64_t si
   return bytes_.subspan(offset, size);
 }
 
+/// In brackets, what machine has that number.
+static std::string describe_machine(unsigned machine) {
+  switch (machine) {
+    case EM_SPU:
+      return " (a real SPU)";
+    case EM_PPC:
+    case EM_PPC64:
+      return " (a PowerPC, as the console's PPU)";
+    case EM_386:
+      return " (a 32-bit x86)";
+    case EM_AARCH64:
+      return " (a 64-bit ARM)";
+    case EM_SPU << 8:
+      return " (that of a real SPU with its bytes swapped: the file says little-endian and is not)";
+    default:
+      return "";
+  }
+}
+
 void ElfFile::read_header() {
   const auto start = bytes_.first(std::min<std::size_t>(bytes_.size(), SELFMAG));
   if (!start.empty() && std::memcmp(start.data(), ELFMAG, start.size()) != 0) refuse("not an ELF file");
@@ -93,7 +112,7 @@ void ElfFile::read_header() {
     const unsigned machine =
         big_endian ? (header_.e_machine >> 8 | (header_.e_machine & 0xFFu) << 8) : header_.e_machine;
     refuse(
-        "built for ELF machine " + std::to_string(machine) + (machine == EM_SPU ? " (a real SPU)" : "") +
+        "built for ELF machine " + std::to_string(machine) + describe_machine(machine) +
         (machine == EM_X86_64 ? " with 64-bit pointers" : "") +
         "; the native engine runs x86-64 images with 32-bit pointers, which softcell_add_spu_kernel makes");
   }

@@ -89,6 +89,7 @@ struct KernelContext {
   // What main is called with.
   std::uintptr_t entry = 0;
   std::uint64_t arguments[4] = {};
+  alignas(16) std::uint32_t vectors[3][4] = {};  ///< the first three, for a main that takes vectors
 
   Operation operation() const { return static_cast<Operation>(request >> 8); }
   std::uint32_t channel() const { return request & 0xFFu; }

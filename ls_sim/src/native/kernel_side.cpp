@@ -61,9 +61,14 @@ void kernel_start(boost::context::detail::transfer_t transfer) {
   context.worker_arithmetic = _mm_getcsr();
   _mm_setcsr(kSpuArithmetic);
   serialise();
-  using Main = int(std::uint64_t, std::uint64_t, std::uint64_t, std::uint64_t);
-  const int status = reinterpret_cast<Main*>(context.entry)(context.arguments[0], context.arguments[1],
-                                                            context.arguments[2], context.arguments[3]);
+  // Numbers and vectors come in registers of different kinds: a main finds those of its own parameters.
+  using Main = int(std::uint64_t, std::uint64_t, std::uint64_t, std::uint64_t, __m128i, __m128i, __m128i);
+  const auto vector = [&](int i) {
+    return _mm_load_si128(reinterpret_cast<const __m128i*>(context.vectors[i]));
+  };
+  const int status =
+      reinterpret_cast<Main*>(context.entry)(context.arguments[0], context.arguments[1], context.arguments[2],
+                                             context.arguments[3], vector(0), vector(1), vector(2));
   gate(request_of(Operation::kStop), 0x2000u | (static_cast<std::uint32_t>(status) & 0xFFu));
   __builtin_trap();  // an ended run is never resumed
 }

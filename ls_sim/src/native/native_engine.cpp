@@ -166,6 +166,7 @@ class NativeEngine final : public Engine {
   std::span<std::byte> canary() const;
   void fill_canary() { dma::fill_local_store(canary().data(), kFiller, canary().size()); }
   bool written_below_stack() const { return !std::ranges::all_of(canary(), is_filler); }
+  std::optional<std::uint32_t> call_of_what_is_no_code() const;
   dma::Fault classify_trap() const;
   dma::Fault cause_of_trap() const;
   std::string describe_damaged_code() const;
@@ -226,6 +227,16 @@ void NativeEngine::prepare(const EntryArguments& arguments) {
   context_.arguments[1] = arguments.argp;
   context_.arguments[2] = arguments.envp;
   context_.arguments[3] = arguments.fourth;
+  for (std::size_t i = 0; i < std::size(context_.vectors); ++i) {
+    auto& words = context_.vectors[i];
+    if (arguments.registers) {
+      std::copy_n(arguments.registers->begin() + 4 * static_cast<std::ptrdiff_t>(i), 4, words);
+    } else {  // a number of 64 bits is in the first two words, the upper half first
+      words[0] = static_cast<std::uint32_t>(context_.arguments[i] >> 32);
+      words[1] = static_cast<std::uint32_t>(context_.arguments[i]);
+      words[2] = words[3] = 0;
+    }
+  }
   context_.interrupted = 0;
   context_.stepping = 0;
   context_.trap = {};
@@ -244,7 +255,24 @@ void NativeEngine::run_kernel() {
   native::step(context_, false);
   std::atomic_signal_fence(std::memory_order_seq_cst);
   context_.in_kernel = 0;
-  if (context_.operation() == Operation::kFault) result_ = {0, classify_trap()};
+  if (context_.operation() == Operation::kFault) {
+    if (const auto call = call_of_what_is_no_code()) context_.caller = arena() + *call;
+    result_ = {0, classify_trap()};
+  }
+}
+
+/// Where the kernel has called an address outside of the local store: it lies on the stack where to return to.
+/// @return  nothing: it has not.
+std::optional<std::uint32_t> NativeEngine::call_of_what_is_no_code() const {
+  const native::Trap& trap = context_.trap;
+  const std::uintptr_t top = trap.stack - arena();
+  if (!trap.instruction_fetch || trap.instruction != trap.address ||
+      top > dma::kLocalStoreBytes - sizeof(std::uint64_t))
+    return std::nullopt;
+  std::uint64_t back = 0;
+  std::memcpy(&back, local_store_.base() + top, sizeof back);
+  const std::uintptr_t call = back - 1 - arena();
+  return call < dma::kLocalStoreBytes ? std::optional(static_cast<std::uint32_t>(call)) : std::nullopt;
 }
 
 RunResult NativeEngine::run(const EntryArguments& arguments, ChannelPort& channels, AccessObserver* accesses,
@@ -537,9 +565,11 @@ dma::Fault NativeEngine::cause_of_trap() const {
   if (job_image_ != nullptr) {
     if (auto damage = check_caller()) return *damage;  // whatever came of it
   }
+  const auto call = call_of_what_is_no_code();
   const std::string where = at < dma::kLocalStoreBytes
                                 ? "the instruction at local-store address " + hexadecimal(at)
-                                : "an instruction outside the local store";
+                            : call ? "the call at local-store address " + hexadecimal(*call)
+                                   : "an instruction outside the local store";
   if (trap.signal == native::kInterruptSignal) {
     return fault(dma::Rule::kDeadlineExceeded,
                  "the kernel did not end in time; it was at local-store address " + hexadecimal(at));
@@ -556,7 +586,9 @@ dma::Fault NativeEngine::cause_of_trap() const {
     return fault(dma::Rule::kIllegalInstruction, where + " is invalid");
   }
   if (trap.signal == SIGFPE) {
-    return fault(dma::Rule::kIllegalInstruction, where + " divides an integer by zero");
+    return fault(
+        dma::Rule::kIllegalInstruction,
+        where + " divides an integer by zero, or the smallest integer by -1, whose quotient has no place");
   }
   if (trap.general_protection) {
     return fault(dma::Rule::kOutsideLocalStore, where + " used a pointer that is not a valid address");
@@ -564,6 +596,11 @@ dma::Fault NativeEngine::cause_of_trap() const {
   const char* const access = trap.instruction_fetch ? " jumped to "
                              : trap.write           ? " wrote to "
                                                     : " read from ";
+  if (trap.address == 0) {
+    return fault(dma::Rule::kOutsideLocalStore, where + access + "address " + hexadecimal(0) +
+                                                    ", by a null pointer" +
+                                                    (trap.instruction_fetch ? " to a function" : ""));
+  }
   if (dma::is_low_word_of_effective_address(trap.address)) {
     return fault(dma::Rule::kEffectiveAddressAsPointer,
                  where + access + "address " + hexadecimal(trap.address) +

@@ -60,8 +60,9 @@ int spe_program_load(spe_context_ptr_t spe, spe_program_handle_t* program);
  *
  * Returns 0 when the program has ended, and the code of a stop-and-signal instruction when it has stopped. -1 with
  * errno EINVAL: a null entry, one where a program cannot begin, unknown flags, SPE_RUN_USER_REGS without argp. EBUSY:
- * the context runs. ENOEXEC: nothing was loaded. EIO: the program broke a rule, which *stopinfo and standard error
- * say. EFAULT: a callback has failed, or the emulator has ended the program. EAGAIN: the host has no thread left. */
+ * the context runs. ENOEXEC: nothing was loaded. EIO: a command of the MFC broke a rule, which *stopinfo and standard
+ * error say. EFAULT: a halt, an instruction or a channel that there is not, a callback that has failed or has no handler
+ * (SPE_CALLBACK_ERROR, with -1), or the emulator has ended the program. EAGAIN: the host has no thread left. */
 int spe_context_run(spe_context_ptr_t spe, unsigned int* entry, unsigned int runflags, void* argp, void* envp,
                     spe_stop_info_t* stopinfo);
 
@@ -77,7 +78,7 @@ spe_event_handler_ptr_t spe_event_handler_create(void);
 /* EAGAIN: a thread waits for its events. */
 int spe_event_handler_destroy(spe_event_handler_ptr_t evhandler);
 
-/* Events are waited for as long as their condition holds: until the mailbox was read or filled, the tag status or the
+/* Events that are registered already get the new data. Events are waited for as long as their condition holds: until the mailbox was read or filled, the tag status or the
  * stop information was read. EINVAL: a null pointer, or no such context in it. ENOTSUP: unknown events, or a context
  * made without SPE_EVENTS_ENABLE. */
 int spe_event_handler_register(spe_event_handler_ptr_t evhandler, spe_event_unit_t* event);
@@ -144,10 +145,11 @@ void* spe_ps_area_get(spe_context_ptr_t spe, enum ps_area area);
  * address of the arguments. Any other result than 0 ends spe_context_run(). */
 
 /* callnum: 4 to 255. EINVAL: one above, a null handler, an unknown mode. EACCES: SPE_CALLBACK_NEW, and there is one, or the
- * number is one of the first four, which are the libraries'. ESRCH: SPE_CALLBACK_UPDATE, and there is none. */
+ * number is one of the first four, which are the libraries' and softcell's own: they cannot be updated either. ESRCH: SPE_CALLBACK_UPDATE, and there is none. */
 int spe_callback_handler_register(void* handler, unsigned int callnum, unsigned int mode);
 
-/* EINVAL: callnum is out of range. EACCES: it is one of the libraries'. ESRCH: there is none. */
+/* EINVAL: callnum is out of range. EACCES: it is one of the libraries'. ESRCH: there is none; spe_callback_handler_query() says so of
+ * the libraries' numbers, too, as no function of the PPU side stands behind them. */
 int spe_callback_handler_deregister(unsigned int callnum);
 void* spe_callback_handler_query(unsigned int callnum);
 

@@ -55,6 +55,7 @@
 #define SC_C_CALL_convtf(a, scale) softcell_sdk::to_float_by(a, scale)
 #define SC_C_CALL_convts(a, scale) softcell_sdk::to_signed_by(a, scale)
 #define SC_C_CALL_convtu(a, scale) softcell_sdk::to_unsigned_by(a, scale)
+#define SC_C_CALL_testsv(a, kinds) softcell_sdk::special_values(a, kinds)
 #define SC_C_CALL_extend(a) spu_extend(a)
 #define SC_C_CALL_roundtf(a) spu_roundtf(a)
 #define SC_C_CALL_re(a) spu_re(a)

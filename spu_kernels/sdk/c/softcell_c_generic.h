@@ -30,54 +30,54 @@
 #include "softcell_c_rows.h"
 
 /* What the compiler's vectors do by themselves needs no function. Integer sums wrap: they are made of unsigned lanes. */
-#define SC_C_INTEGER(name, V, S, U, I)                                    \
-  SC_C_INLINE V softcell_c_add_##V(V a, V b) { return (V)((U)a + (U)b); } \
-  SC_C_INLINE V softcell_c_sub_##V(V a, V b) { return (V)((U)a - (U)b); }
+#define SC_C_INTEGER(name, V, S, U, I)                                        \
+  SC_C_INLINE V softcell_c_add_##V(V a_, V b_) { return (V)((U)a_ + (U)b_); } \
+  SC_C_INLINE V softcell_c_sub_##V(V a_, V b_) { return (V)((U)a_ - (U)b_); }
 SC_C_16_32(SC_C_INTEGER, )
 /* Single precision is one instruction of the host each, as in softcell_single.h: an exact zero of a product is +0. */
-SC_C_INLINE vec_float4 softcell_c_add_vec_float4(vec_float4 a, vec_float4 b) { return a + b; }
-SC_C_INLINE vec_float4 softcell_c_sub_vec_float4(vec_float4 a, vec_float4 b) { return a - b; }
-SC_C_INLINE vec_float4 softcell_c_madd_vec_float4(vec_float4 a, vec_float4 b, vec_float4 c) {
-  return __builtin_ia32_vfmaddps(a, b, c);
+SC_C_INLINE vec_float4 softcell_c_add_vec_float4(vec_float4 a_, vec_float4 b_) { return a_ + b_; }
+SC_C_INLINE vec_float4 softcell_c_sub_vec_float4(vec_float4 a_, vec_float4 b_) { return a_ - b_; }
+SC_C_INLINE vec_float4 softcell_c_madd_vec_float4(vec_float4 a_, vec_float4 b_, vec_float4 c_) {
+  return __builtin_ia32_vfmaddps(a_, b_, c_);
 }
-SC_C_INLINE vec_float4 softcell_c_mul_vec_float4(vec_float4 a, vec_float4 b) {
-  return softcell_c_madd_vec_float4(a, b, (vec_float4)(vec_uint4){0});
+SC_C_INLINE vec_float4 softcell_c_mul_vec_float4(vec_float4 a_, vec_float4 b_) {
+  return softcell_c_madd_vec_float4(a_, b_, (vec_float4)(vec_uint4){0});
 }
-SC_C_INLINE vec_float4 softcell_c_msub_vec_float4(vec_float4 a, vec_float4 b, vec_float4 c) {
-  return softcell_c_madd_vec_float4(a, b, -c);
+SC_C_INLINE vec_float4 softcell_c_msub_vec_float4(vec_float4 a_, vec_float4 b_, vec_float4 c_) {
+  return softcell_c_madd_vec_float4(a_, b_, -c_);
 }
-SC_C_INLINE vec_float4 softcell_c_nmsub_vec_float4(vec_float4 a, vec_float4 b, vec_float4 c) {
-  return softcell_c_madd_vec_float4(-a, b, c);
+SC_C_INLINE vec_float4 softcell_c_nmsub_vec_float4(vec_float4 a_, vec_float4 b_, vec_float4 c_) {
+  return softcell_c_madd_vec_float4(-a_, b_, c_);
 }
-#define SC_C_COMPARED(name, V, S, U, I)                                \
-  SC_C_INLINE U softcell_c_cmpeq_##V(V a, V b) { return (U)(a == b); } \
-  SC_C_INLINE U softcell_c_cmpgt_##V(V a, V b) { return (U)(a > b); }
+#define SC_C_COMPARED(name, V, S, U, I)                                    \
+  SC_C_INLINE U softcell_c_cmpeq_##V(V a_, V b_) { return (U)(a_ == b_); } \
+  SC_C_INLINE U softcell_c_cmpgt_##V(V a_, V b_) { return (U)(a_ > b_); }
 SC_C_8_16_32(SC_C_COMPARED, )
 #undef SC_C_COMPARED
-#define SC_C_ANY(name, V, S, U, I)                                           \
-  SC_C_INLINE V softcell_c_splats_##V(S s) {                                 \
-    S lanes[16 / sizeof(S)];                                                 \
-    V v;                                                                     \
-    for (unsigned int i = 0; i < 16 / sizeof(S); ++i) lanes[i] = s;          \
-    __builtin_memcpy(&v, lanes, 16);                                         \
-    return v;                                                                \
-  }                                                                          \
-  SC_C_INLINE V softcell_c_insert_##V(S s, V a, int element) {               \
-    a[(unsigned int)element & (16 / sizeof(S) - 1)] = s;                     \
-    return a;                                                                \
-  }                                                                          \
-  SC_C_INLINE S softcell_c_extract_##V(V a, int element) {                   \
-    return a[(unsigned int)element & (16 / sizeof(S) - 1)];                  \
-  }                                                                          \
-  SC_C_INLINE V softcell_c_and_##V(V a, V b) { return (V)((U)a & (U)b); }    \
-  SC_C_INLINE V softcell_c_or_##V(V a, V b) { return (V)((U)a | (U)b); }     \
-  SC_C_INLINE V softcell_c_xor_##V(V a, V b) { return (V)((U)a ^ (U)b); }    \
-  SC_C_INLINE V softcell_c_andc_##V(V a, V b) { return (V)((U)a & ~(U)b); }  \
-  SC_C_INLINE V softcell_c_orc_##V(V a, V b) { return (V)((U)a | ~(U)b); }   \
-  SC_C_INLINE V softcell_c_nand_##V(V a, V b) { return (V) ~((U)a & (U)b); } \
-  SC_C_INLINE V softcell_c_nor_##V(V a, V b) { return (V) ~((U)a | (U)b); }  \
-  SC_C_INLINE V softcell_c_eqv_##V(V a, V b) { return (V) ~((U)a ^ (U)b); }  \
-  SC_C_INLINE V softcell_c_sel_##V(V a, V b, U c) { return (V)(((U)a & ~c) | ((U)b & c)); }
+#define SC_C_ANY(name, V, S, U, I)                                               \
+  SC_C_INLINE V softcell_c_splats_##V(S s_) {                                    \
+    S lanes[16 / sizeof(S)];                                                     \
+    V v_;                                                                        \
+    for (unsigned int i_ = 0; i_ < 16 / sizeof(S); ++i_) lanes[i_] = s_;         \
+    __builtin_memcpy(&v_, lanes, 16);                                            \
+    return v_;                                                                   \
+  }                                                                              \
+  SC_C_INLINE V softcell_c_insert_##V(S s_, V a_, int element) {                 \
+    a_[(unsigned int)element & (16 / sizeof(S) - 1)] = s_;                       \
+    return a_;                                                                   \
+  }                                                                              \
+  SC_C_INLINE S softcell_c_extract_##V(V a_, int element) {                      \
+    return a_[(unsigned int)element & (16 / sizeof(S) - 1)];                     \
+  }                                                                              \
+  SC_C_INLINE V softcell_c_and_##V(V a_, V b_) { return (V)((U)a_ & (U)b_); }    \
+  SC_C_INLINE V softcell_c_or_##V(V a_, V b_) { return (V)((U)a_ | (U)b_); }     \
+  SC_C_INLINE V softcell_c_xor_##V(V a_, V b_) { return (V)((U)a_ ^ (U)b_); }    \
+  SC_C_INLINE V softcell_c_andc_##V(V a_, V b_) { return (V)((U)a_ & ~(U)b_); }  \
+  SC_C_INLINE V softcell_c_orc_##V(V a_, V b_) { return (V)((U)a_ | ~(U)b_); }   \
+  SC_C_INLINE V softcell_c_nand_##V(V a_, V b_) { return (V) ~((U)a_ & (U)b_); } \
+  SC_C_INLINE V softcell_c_nor_##V(V a_, V b_) { return (V) ~((U)a_ | (U)b_); }  \
+  SC_C_INLINE V softcell_c_eqv_##V(V a_, V b_) { return (V) ~((U)a_ ^ (U)b_); }  \
+  SC_C_INLINE V softcell_c_sel_##V(V a_, V b_, U c_) { return (V)(((U)a_ & ~c_) | ((U)b_ & c_)); }
 SC_C_ALL(SC_C_ANY, )
 #undef SC_C_INTEGER
 #undef SC_C_ANY
@@ -131,9 +131,9 @@ enum { SC_C_ALL(SC_C_KNOWN, ) softcell_c_known_softcell_comparison = 1 };
 #define SC_C_IF(condition, a, otherwise) __builtin_choose_expr(condition, a, otherwise)
 
 /* A scalar operand becomes a vector of the other's type. */
-#define SC_C_SPLAT(V, S)                                                            \
-  SC_C_INLINE V softcell_c_like_scalar_##V(S s) { return SC_C_NAME(splats, V)(s); } \
-  SC_C_INLINE V softcell_c_like_vector_##V(V v) { return v; }
+#define SC_C_SPLAT(V, S)                                                              \
+  SC_C_INLINE V softcell_c_like_scalar_##V(S s_) { return SC_C_NAME(splats, V)(s_); } \
+  SC_C_INLINE V softcell_c_like_vector_##V(V v_) { return v_; }
 SC_C_SPLAT(vec_uchar16, unsigned char)
 SC_C_SPLAT(vec_char16, signed char)
 SC_C_SPLAT(vec_ushort8, unsigned short)
@@ -306,6 +306,7 @@ SC_C_SPLAT(vec_double2, double)
 #define SC_C_CASES_COMPARED(f) SC_C_CASES_8_16_32(f), SC_C_CASES_REAL(f)
 #define spu_cmpeq(a, b) SC_C_CALL2_LIKE(SC_C_CASES_COMPARED, cmpeq, a, b)
 #define spu_cmpgt(a, b) SC_C_CALL2_LIKE(SC_C_CASES_COMPARED, cmpgt, a, b)
+#define spu_testsv(a, kinds) (softcell_c_testsv_vec_double2((a), SC_C_CONSTANT(kinds, 0, 0x7F)))
 #define spu_cmpabseq(a, b) SC_C_CALL2(SC_C_CASES_REAL, cmpabseq, a, b)
 #define spu_cmpabsgt(a, b) SC_C_CALL2(SC_C_CASES_REAL, cmpabsgt, a, b)
 SC_C_INLINE void softcell_halt_if(int condition) {
@@ -384,5 +385,19 @@ SC_C_INLINE void softcell_halt_if(int condition) {
 #define spu_dsync() __asm__ volatile("" ::: "memory")
 #define spu_idisable() __asm__ volatile("" ::: "memory")
 #define __align_hint(pointer, base, offset) ((void)(pointer))
+
+/* What compiles on an SPU and has no meaning here is refused where it is used, with the reason. */
+__attribute__((error(
+    "FPSCR is not modelled on the host: doubles round to nearest, and there are no sticky flags"))) vec_uint4
+softcell_no_fpscr(void);
+__attribute__((error("special purpose registers are not modelled on the host"))) unsigned int
+softcell_no_special_register(void);
+__attribute__((error("interrupts are not modelled on the host: wait on SPU_RdEventStat instead"))) void
+softcell_no_interrupts(void);
+#define spu_ienable() softcell_no_interrupts()
+#define spu_mffpscr() softcell_no_fpscr()
+#define spu_mtfpscr(value) ((void)(value), (void)softcell_no_fpscr())
+#define spu_mfspr(number) softcell_no_special_register()
+#define spu_mtspr(number, value) ((void)(value), (void)softcell_no_special_register())
 
 #endif

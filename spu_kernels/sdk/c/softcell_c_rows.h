@@ -55,7 +55,7 @@ SC_C_2(vec_float4, convtf, vec_uint4, int)  SC_C_2(vec_float4, convtf, vec_int4,
 SC_C_2(vec_int4, convts, vec_float4, int)   SC_C_2(vec_uint4, convtu, vec_float4, int)
 SC_C_1(vec_short8, extend, vec_char16)      SC_C_1(vec_int4, extend, vec_short8)
 SC_C_1(vec_llong2, extend, vec_int4)        SC_C_1(vec_double2, extend, vec_float4)
-SC_C_1(vec_float4, roundtf, vec_double2)
+SC_C_1(vec_float4, roundtf, vec_double2)    SC_C_2(vec_ullong2, testsv, vec_double2, int)
 SC_C_1(vec_float4, re, vec_float4)          SC_C_1(vec_float4, rsqrte, vec_float4)
 SC_C_3(vec_int4, madd, vec_short8, vec_short8, vec_int4)
 SC_C_2(vec_uint4, mule, vec_ushort8, vec_ushort8)  SC_C_2(vec_int4, mule, vec_short8, vec_short8)

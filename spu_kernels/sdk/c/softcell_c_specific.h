@@ -6,21 +6,23 @@
 
 #include "softcell_c_generic.h"
 
-SC_C_INLINE qword softcell_bytes_as_qword(vec_char16 v) { return (qword)softcell_regroup((vec_uchar16)v, 3); }
-SC_C_INLINE qword softcell_halves_as_qword(vec_short8 v) {
-  return (qword)softcell_regroup((vec_uchar16)v, 2);
+SC_C_INLINE qword softcell_bytes_as_qword(vec_char16 v_) {
+  return (qword)softcell_regroup((vec_uchar16)v_, 3);
 }
-SC_C_INLINE qword softcell_doubles_as_qword(vec_ullong2 v) {
-  return (qword)softcell_regroup((vec_uchar16)v, 4);
+SC_C_INLINE qword softcell_halves_as_qword(vec_short8 v_) {
+  return (qword)softcell_regroup((vec_uchar16)v_, 2);
 }
-SC_C_INLINE vec_ullong2 softcell_qword_as_doubles(qword v) {
-  return (vec_ullong2)softcell_regroup((vec_uchar16)v, 4);
+SC_C_INLINE qword softcell_doubles_as_qword(vec_ullong2 v_) {
+  return (qword)softcell_regroup((vec_uchar16)v_, 4);
 }
-SC_C_INLINE vec_char16 softcell_qword_as_bytes(qword v) {
-  return (vec_char16)softcell_regroup((vec_uchar16)v, 3);
+SC_C_INLINE vec_ullong2 softcell_qword_as_doubles(qword v_) {
+  return (vec_ullong2)softcell_regroup((vec_uchar16)v_, 4);
 }
-SC_C_INLINE vec_short8 softcell_qword_as_halves(qword v) {
-  return (vec_short8)softcell_regroup((vec_uchar16)v, 2);
+SC_C_INLINE vec_char16 softcell_qword_as_bytes(qword v_) {
+  return (vec_char16)softcell_regroup((vec_uchar16)v_, 3);
+}
+SC_C_INLINE vec_short8 softcell_qword_as_halves(qword v_) {
+  return (vec_short8)softcell_regroup((vec_uchar16)v_, 2);
 }
 
 /* Immediates of 10 bits in every lane, and of 7 bits: counts. */

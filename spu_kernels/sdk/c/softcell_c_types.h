@@ -28,10 +28,10 @@ typedef vec_uint4 qword;
 #define __vector __attribute__((vector_size(16)))
 
 /* Byte j of the result is byte j ^ flip: from one lane width to another. `flip` is a constant. */
-SC_C_INLINE vec_uchar16 softcell_regroup(vec_uchar16 a, unsigned int flip) {
-#define SC_C_FLIP(f)                                                                                    \
-  case f:                                                                                               \
-    return __builtin_shufflevector(a, a, 0 ^ f, 1 ^ f, 2 ^ f, 3 ^ f, 4 ^ f, 5 ^ f, 6 ^ f, 7 ^ f, 8 ^ f, \
+SC_C_INLINE vec_uchar16 softcell_regroup(vec_uchar16 a_, unsigned int flip) {
+#define SC_C_FLIP(f)                                                                                      \
+  case f:                                                                                                 \
+    return __builtin_shufflevector(a_, a_, 0 ^ f, 1 ^ f, 2 ^ f, 3 ^ f, 4 ^ f, 5 ^ f, 6 ^ f, 7 ^ f, 8 ^ f, \
                                    9 ^ f, 10 ^ f, 11 ^ f, 12 ^ f, 13 ^ f, 14 ^ f, 15 ^ f);
   switch (flip) {
     SC_C_FLIP(1)
@@ -41,7 +41,7 @@ SC_C_INLINE vec_uchar16 softcell_regroup(vec_uchar16 a, unsigned int flip) {
     SC_C_FLIP(6)
     SC_C_FLIP(7)
     default:
-      return a;
+      return a_;
   }
 #undef SC_C_FLIP
 }

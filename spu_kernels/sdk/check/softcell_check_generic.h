@@ -55,8 +55,8 @@ struct Scalar {
 };
 
 // Constants, one lane
-SC_ALL(SC_V_S, spu_splats)      template <class T> void spu_splats(T) = delete;
-SC_ALL(SC_V_S_AT, spu_promote)  template <class T> void spu_promote(T, int) = delete;
+SC_ALL(SC_V_S, spu_splats)      template <class T_> void spu_splats(T_) = delete;
+SC_ALL(SC_V_S_AT, spu_promote)  template <class T_> void spu_promote(T_, int) = delete;
 SC_ALL(SC_V_SV_AT, spu_insert)
 SC_ALL(SC_S_V_AT, spu_extract)
 
@@ -109,8 +109,8 @@ SC_8_16_32(SC_U_VV, spu_cmpgt)  SC_REALS(SC_U_VV, spu_cmpgt)  SC_8_16_32(SC_U_VS
 SC_REALS(SC_U_VV, spu_cmpabseq)
 SC_REALS(SC_U_VV, spu_cmpabsgt)
 vec_ullong2 spu_testsv(vec_double2, int);
-void spu_hcmpeq(int, Scalar);  void spu_hcmpeq(unsigned int, Scalar);  template <class T> void spu_hcmpeq(T, Scalar) = delete;
-void spu_hcmpgt(int, Scalar);  void spu_hcmpgt(unsigned int, Scalar);  template <class T> void spu_hcmpgt(T, Scalar) = delete;
+void spu_hcmpeq(int, Scalar);  void spu_hcmpeq(unsigned int, Scalar);  template <class T_> void spu_hcmpeq(T_, Scalar) = delete;
+void spu_hcmpgt(int, Scalar);  void spu_hcmpgt(unsigned int, Scalar);  template <class T_> void spu_hcmpgt(T_, Scalar) = delete;
 
 // Bits and masks
 SC_BYTES(SC_U_V, spu_cntb)
@@ -122,9 +122,9 @@ SC_MASK(spu_maskh, vec_ushort8, short)  SC_MASK(spu_maskh, vec_ushort8, int)
 SC_MASK(spu_maskw, vec_uint4, short)    SC_MASK(spu_maskw, vec_uint4, int)
 vec_ushort8 spu_maskh(signed char);     vec_ushort8 spu_maskh(unsigned char);
 vec_uint4 spu_maskw(signed char);       vec_uint4 spu_maskw(unsigned char);
-template <class T> void spu_maskb(T) = delete;
-template <class T> void spu_maskh(T) = delete;
-template <class T> void spu_maskw(T) = delete;
+template <class T_> void spu_maskb(T_) = delete;
+template <class T_> void spu_maskh(T_) = delete;
+template <class T_> void spu_maskw(T_) = delete;
 SC_ALL(SC_V_VVU, spu_sel)
 SC_ALL(SC_V_VVP, spu_shuffle)
 

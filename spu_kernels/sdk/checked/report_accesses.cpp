@@ -62,6 +62,10 @@ SC_RANGE(__tsan_write_range, kStore)
 SC_RANGE(__asan_loadN_noabort, kLoad)
 SC_RANGE(__asan_storeN_noabort, kStore)
 
+// The pointer to a virtual table, which constructors and destructors store.
+extern "C" void __tsan_vptr_update(const volatile void* at, void*) { SC_REPORT(at, sizeof(void*), kStore); }
+extern "C" void __tsan_vptr_read(const volatile void* at) { SC_REPORT(at, sizeof(void*), kLoad); }
+
 /// Called by a constructor that both compilers add, and that ls.ld drops.
 extern "C" void __tsan_init() {}
 extern "C" void __asan_handle_no_return() {}

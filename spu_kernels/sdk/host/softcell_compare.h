@@ -5,33 +5,33 @@
 #include "softcell_environment.h"
 #include "softcell_lanes.h"
 
-#define SC_SDK_COMPARE(name, relation)                                                                \
-  template <class T, softcell_sdk::If<softcell_sdk::kInteger<T>> = 0>                                 \
-  SC_SDK_INLINE softcell_sdk::Vector<softcell_sdk::Unsigned<T>> name(softcell_sdk::Vector<T> a,       \
-                                                                     softcell_sdk::Vector<T> b) {     \
-    return softcell_sdk::make<softcell_sdk::Vector<softcell_sdk::Unsigned<T>>>(a.raw relation b.raw); \
-  }                                                                                                   \
-  template <class T, softcell_sdk::If<softcell_sdk::kInteger<T>> = 0>                                 \
-  SC_SDK_INLINE softcell_sdk::Vector<softcell_sdk::Unsigned<T>> name(softcell_sdk::Vector<T> a,       \
-                                                                     softcell_sdk::Scalar<T> b) {     \
-    return name(a, softcell_sdk::splats<T>(b));                                                       \
+#define SC_SDK_COMPARE(name, relation)                                                                   \
+  template <class T_, softcell_sdk::If<softcell_sdk::kInteger<T_>> = 0>                                  \
+  SC_SDK_INLINE softcell_sdk::Vector<softcell_sdk::Unsigned<T_>> name(softcell_sdk::Vector<T_> a_,       \
+                                                                      softcell_sdk::Vector<T_> b_) {     \
+    return softcell_sdk::make<softcell_sdk::Vector<softcell_sdk::Unsigned<T_>>>(a_.raw relation b_.raw); \
+  }                                                                                                      \
+  template <class T_, softcell_sdk::If<softcell_sdk::kInteger<T_>> = 0>                                  \
+  SC_SDK_INLINE softcell_sdk::Vector<softcell_sdk::Unsigned<T_>> name(softcell_sdk::Vector<T_> a_,       \
+                                                                      softcell_sdk::Scalar<T_> b_) {     \
+    return name(a_, softcell_sdk::splats<T_>(b_));                                                       \
   }
 SC_SDK_COMPARE(spu_cmpeq, ==)
 SC_SDK_COMPARE(spu_cmpgt, >)
 #undef SC_SDK_COMPARE
 
 namespace softcell_sdk {
-template <class A>
-inline constexpr bool kHaltScalar = kSame<A, int> || kSame<A, unsigned int>;
+template <class A_>
+inline constexpr bool kHaltScalar = kSame<A_, int> || kSame<A_, unsigned int>;
 }
 
 /// Halt the SPU when the condition holds: the emulator reports a fault and ends the program. The first
 /// scalar's type decides between the signed and the unsigned compare.
-template <class A, softcell_sdk::If<softcell_sdk::kHaltScalar<A>> = 0>
-SC_SDK_INLINE void spu_hcmpeq(A a, softcell_sdk::Scalar<A> b) {
-  if (a == b) softcell_sdk::call_gate(softcell_sdk::kHalt, 0, 0);
+template <class A_, softcell_sdk::If<softcell_sdk::kHaltScalar<A_>> = 0>
+SC_SDK_INLINE void spu_hcmpeq(A_ a_, softcell_sdk::Scalar<A_> b_) {
+  if (a_ == b_) softcell_sdk::call_gate(softcell_sdk::kHalt, 0, 0);
 }
-template <class A, softcell_sdk::If<softcell_sdk::kHaltScalar<A>> = 0>
-SC_SDK_INLINE void spu_hcmpgt(A a, softcell_sdk::Scalar<A> b) {
-  if (a > b) softcell_sdk::call_gate(softcell_sdk::kHalt, 0, 0);
+template <class A_, softcell_sdk::If<softcell_sdk::kHaltScalar<A_>> = 0>
+SC_SDK_INLINE void spu_hcmpgt(A_ a_, softcell_sdk::Scalar<A_> b_) {
+  if (a_ > b_) softcell_sdk::call_gate(softcell_sdk::kHalt, 0, 0);
 }

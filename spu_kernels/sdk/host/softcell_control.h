@@ -66,20 +66,20 @@ SC_SDK_INLINE void sync() { call_gate(kSync, 0, 0); }
 template <class>
 inline constexpr bool kNever = false;
 
-template <class T = void>
+template <class T_ = void>
 SC_SDK_INLINE vec_uint4 no_fpscr() {
-  static_assert(kNever<T>,
+  static_assert(kNever<T_>,
                 "FPSCR is not modelled on the host: doubles round to nearest, and there are no sticky flags");
   return {};
 }
-template <class T = void>
+template <class T_ = void>
 SC_SDK_INLINE unsigned int no_special_register() {
-  static_assert(kNever<T>, "special purpose registers are not modelled on the host");
+  static_assert(kNever<T_>, "special purpose registers are not modelled on the host");
   return 0;
 }
-template <class T = void>
+template <class T_ = void>
 SC_SDK_INLINE void no_interrupts() {
-  static_assert(kNever<T>, "interrupts are not modelled on the host: wait on SPU_RdEventStat instead");
+  static_assert(kNever<T_>, "interrupts are not modelled on the host: wait on SPU_RdEventStat instead");
 }
 
 }  // namespace softcell_sdk

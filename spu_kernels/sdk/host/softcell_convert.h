@@ -30,11 +30,11 @@ SC_SDK_INLINE Raw<unsigned int> scaled_float(Raw<unsigned int> magnitude, int sc
   return (value - (static_cast<unsigned int>(scale) << 23)) & representable;
 }
 
-SC_SDK_INLINE vec_float4 to_float_by(vec_uint4 a, int scale) {
-  return make<vec_float4>(scaled_float(a.raw, scale));
+SC_SDK_INLINE vec_float4 to_float_by(vec_uint4 a_, int scale) {
+  return make<vec_float4>(scaled_float(a_.raw, scale));
 }
-SC_SDK_INLINE vec_float4 to_float_by(vec_int4 a, int scale) {
-  const auto sign = (Raw<unsigned int>)(a.raw >> 31), magnitude = ((Raw<unsigned int>)a.raw ^ sign) - sign;
+SC_SDK_INLINE vec_float4 to_float_by(vec_int4 a_, int scale) {
+  const auto sign = (Raw<unsigned int>)(a_.raw >> 31), magnitude = ((Raw<unsigned int>)a_.raw ^ sign) - sign;
   const Raw<unsigned int> value = scaled_float(magnitude, scale);
   return make<vec_float4>(value | (sign & (Raw<unsigned int>)(value != 0) & 0x80000000u));
 }
@@ -44,8 +44,8 @@ struct Scaled {
   Raw<int> exponent;   ///< of the product; -1 for zero and denormals
   Raw<int> truncated;  ///< the product's integer part where exponent < 127 + 31; sign included
 };
-SC_SDK_INLINE Scaled scale_up(vec_float4 a, int scale) {
-  const auto word = (Raw<unsigned int>)a.raw;
+SC_SDK_INLINE Scaled scale_up(vec_float4 a_, int scale) {
+  const auto word = (Raw<unsigned int>)a_.raw;
   const auto field = (Raw<int>)(word >> 23 & 0xFFu), zero = (Raw<int>)(field == 0);
   const Raw<int> exponent = (field + scale) | zero;
   const auto fits = (Raw<unsigned int>)(~zero & (exponent < 127 + 31));
@@ -53,34 +53,34 @@ SC_SDK_INLINE Scaled scale_up(vec_float4 a, int scale) {
   return {exponent, (Raw<int>)_mm_cvttps_epi32(product)};
 }
 
-SC_SDK_INLINE vec_int4 to_signed_by(vec_float4 a, int scale) {
-  const Scaled s = scale_up(a, scale);
-  const Raw<int> over = s.exponent >= 127 + 31, most = ((Raw<int>)a.raw >> 31) ^ INT32_MAX;
-  return make<vec_int4>((s.truncated & ~over) | (most & over));
+SC_SDK_INLINE vec_int4 to_signed_by(vec_float4 a_, int scale) {
+  const Scaled s_ = scale_up(a_, scale);
+  const Raw<int> over = s_.exponent >= 127 + 31, most = ((Raw<int>)a_.raw >> 31) ^ INT32_MAX;
+  return make<vec_int4>((s_.truncated & ~over) | (most & over));
 }
-SC_SDK_INLINE vec_uint4 to_unsigned_by(vec_float4 a, int scale) {
-  const Scaled s = scale_up(a, scale);
+SC_SDK_INLINE vec_uint4 to_unsigned_by(vec_float4 a_, int scale) {
+  const Scaled s_ = scale_up(a_, scale);
   // From 2^31 to 2^32 the 24 bits of the fraction are the top of the word.
-  const Raw<int> top = s.exponent == 127 + 31, over = s.exponent > 127 + 31;
-  const auto shifted = (Raw<int>)((Raw<unsigned int>)a.raw << 8 | 0x80000000u);
-  const Raw<int> positive = ~((Raw<int>)a.raw >> 31);
-  return make<vec_uint4>((s.truncated | (shifted & top) | over) & positive);
+  const Raw<int> top = s_.exponent == 127 + 31, over = s_.exponent > 127 + 31;
+  const auto shifted = (Raw<int>)((Raw<unsigned int>)a_.raw << 8 | 0x80000000u);
+  const Raw<int> positive = ~((Raw<int>)a_.raw >> 31);
+  return make<vec_uint4>((s_.truncated | (shifted & top) | over) & positive);
 }
 
-template <int Scale, class V>
-SC_SDK_INLINE vec_float4 to_float(V a) {
+template <int Scale, class V_>
+SC_SDK_INLINE vec_float4 to_float(V_ a_) {
   static_assert(is_scale(Scale), "spu_convtf takes a scale from 0 to 127");
-  return to_float_by(a, Scale);
+  return to_float_by(a_, Scale);
 }
 template <int Scale>
-SC_SDK_INLINE vec_int4 to_signed(vec_float4 a) {
+SC_SDK_INLINE vec_int4 to_signed(vec_float4 a_) {
   static_assert(is_scale(Scale), "spu_convts takes a scale from 0 to 127");
-  return to_signed_by(a, Scale);
+  return to_signed_by(a_, Scale);
 }
 template <int Scale>
-SC_SDK_INLINE vec_uint4 to_unsigned(vec_float4 a) {
+SC_SDK_INLINE vec_uint4 to_unsigned(vec_float4 a_) {
   static_assert(is_scale(Scale), "spu_convtu takes a scale from 0 to 127");
-  return to_unsigned_by(a, Scale);
+  return to_unsigned_by(a_, Scale);
 }
 
 }  // namespace softcell_sdk
@@ -93,19 +93,19 @@ SC_SDK_INLINE vec_uint4 to_unsigned(vec_float4 a) {
 
 /// Words 0 and 2 to doubles. Denormals are zero; an exponent of all ones is infinity or NaN here, unlike in
 /// single precision.
-SC_SDK_INLINE vec_double2 spu_extend(vec_float4 a) {
+SC_SDK_INLINE vec_double2 spu_extend(vec_float4 a_) {
   using namespace softcell_sdk;
-  const Raw<int> field = (Raw<int>)a.raw & 0x7F800000;
-  const auto flushed_lanes = (__m128)((Raw<int>)a.raw & ((field != 0) | INT32_MIN));
+  const Raw<int> field = (Raw<int>)a_.raw & 0x7F800000;
+  const auto flushed_lanes = (__m128)((Raw<int>)a_.raw & ((field != 0) | INT32_MIN));
   return one_nan(_mm_cvtps_pd(_mm_shuffle_ps(flushed_lanes, flushed_lanes, 0x08)));
 }
 
 /// Doubles to words 0 and 2, rounded to nearest even; words 1 and 3 are 0. Results below the smallest normal
 /// float are kept as denormals (the SPU's own behaviour is assumed), which single precision reads as zero
 /// anyway.
-SC_SDK_INLINE vec_float4 spu_roundtf(vec_double2 a) {
+SC_SDK_INLINE vec_float4 spu_roundtf(vec_double2 a_) {
   using namespace softcell_sdk;
-  const auto lanes = (Raw<int>)_mm_unpacklo_ps(to_single(a), zero_floats());
+  const auto lanes = (Raw<int>)_mm_unpacklo_ps(to_single(a_), zero_floats());
   const Raw<int> nan = (lanes & INT32_MAX) > 0x7F800000;
   return make<vec_float4>((lanes & ~nan) | (nan & 0x7FC00000));
 }

@@ -31,16 +31,16 @@ SC_SDK_INLINE Raw<int> look_up(const int* table, Raw<int> index) {
 }
 
 /// frest: the argument's sign; exponent 253 - e, 0 where that is negative, 255 for zero.
-SC_SDK_INLINE vec_float4 reciprocal_estimate(vec_float4 a) {
-  const auto word = (Raw<int>)a.raw;
+SC_SDK_INLINE vec_float4 reciprocal_estimate(vec_float4 a_) {
+  const auto word = (Raw<int>)a_.raw;
   const Raw<int> field = word >> 23 & 0xFF, zero = field == 0, normal = 253 - field;
   const Raw<int> exponent = (normal & (normal > 0) & ~zero) | (zero & 0xFF);
   return make<vec_float4>((word & INT32_MIN) | exponent << 23 | look_up(kReciprocalTable, word >> 18 & 31));
 }
 
 /// frsqest: positive; exponent 190 - (e + 1) / 2, 255 for zero. The argument's sign is ignored.
-SC_SDK_INLINE vec_float4 reciprocal_square_root_estimate(vec_float4 a) {
-  const auto word = (Raw<int>)a.raw;
+SC_SDK_INLINE vec_float4 reciprocal_square_root_estimate(vec_float4 a_) {
+  const auto word = (Raw<int>)a_.raw;
   const Raw<int> field = word >> 23 & 0xFF, zero = field == 0;
   const Raw<int> exponent = ((190 - ((field + 1) >> 1)) & ~zero) | (zero & 0xFF);
   return make<vec_float4>(exponent << 23 | look_up(kReciprocalSquareRootTable, word >> 18 & 63));
@@ -48,9 +48,9 @@ SC_SDK_INLINE vec_float4 reciprocal_square_root_estimate(vec_float4 a) {
 
 /// fi: sharpens an estimate with the argument's low fraction bits.
 SC_SDK_INLINE vec_float4 interpolate(vec_float4 argument, vec_float4 estimate) {
-  const auto a = (Raw<unsigned int>)argument.raw, e = (Raw<unsigned int>)estimate.raw;
-  const Raw<unsigned int> base = (e & 0x7FFC00u) << 9, product = (e & 0x3FFu) * (a & 0x7FFFFu),
-                          head = e & 0xFF800000u;
+  const auto a_ = (Raw<unsigned int>)argument.raw, e_ = (Raw<unsigned int>)estimate.raw;
+  const Raw<unsigned int> base = (e_ & 0x7FFC00u) << 9, product = (e_ & 0x3FFu) * (a_ & 0x7FFFFu),
+                          head = e_ & 0xFF800000u;
   const Raw<unsigned int> difference = base - product;
   // One binade down: only for an estimate that is not the argument's own.
   const auto borrowed = (Raw<unsigned int>)(product > base);
@@ -61,18 +61,18 @@ SC_SDK_INLINE vec_float4 interpolate(vec_float4 argument, vec_float4 estimate) {
 /// fi on an argument's own estimate: its product never passes its base (a test tries every one), so there is
 /// no borrow.
 SC_SDK_INLINE vec_float4 interpolate_own(vec_float4 argument, vec_float4 estimate) {
-  const auto a = (Raw<unsigned int>)argument.raw, e = (Raw<unsigned int>)estimate.raw;
-  const Raw<unsigned int> base = (e & 0x7FFC00u) << 9, product = (e & 0x3FFu) * (a & 0x7FFFFu);
-  return make<vec_float4>((e & 0xFF800000u) | (base - product) >> 9);
+  const auto a_ = (Raw<unsigned int>)argument.raw, e_ = (Raw<unsigned int>)estimate.raw;
+  const Raw<unsigned int> base = (e_ & 0x7FFC00u) << 9, product = (e_ & 0x3FFu) * (a_ & 0x7FFFFu);
+  return make<vec_float4>((e_ & 0xFF800000u) | (base - product) >> 9);
 }
 
 }  // namespace softcell_sdk
 
 /// 1 / a to 12 bits.
-SC_SDK_INLINE vec_float4 spu_re(vec_float4 a) {
-  return softcell_sdk::interpolate_own(a, softcell_sdk::reciprocal_estimate(a));
+SC_SDK_INLINE vec_float4 spu_re(vec_float4 a_) {
+  return softcell_sdk::interpolate_own(a_, softcell_sdk::reciprocal_estimate(a_));
 }
 /// 1 / sqrt(|a|) to 12 bits.
-SC_SDK_INLINE vec_float4 spu_rsqrte(vec_float4 a) {
-  return softcell_sdk::interpolate_own(a, softcell_sdk::reciprocal_square_root_estimate(a));
+SC_SDK_INLINE vec_float4 spu_rsqrte(vec_float4 a_) {
+  return softcell_sdk::interpolate_own(a_, softcell_sdk::reciprocal_square_root_estimate(a_));
 }

@@ -5,14 +5,14 @@
 
 namespace softcell_sdk {
 
-/// The lane type that a scalar of type T splats to. Only the exact scalar types have one: on the SPU, too,
+/// The lane type that a scalar of type T_ splats to. Only the exact scalar types have one: on the SPU, too,
 /// spu_splats(true) is an error, and so is that of a `long`, which has 32 bits. Where it has 64, in tests that
 /// include this from ordinary host code, it is a name of uint64_t.
-template <class T>
+template <class T_>
 struct LaneOf {};
-template <class T>
+template <class T_>
 struct LaneIs {
-  using Type = T;
+  using Type = T_;
 };
 template <>
 struct LaneOf<unsigned char> : LaneIs<unsigned char> {};
@@ -41,20 +41,20 @@ struct LaneOf<float> : LaneIs<float> {};
 template <>
 struct LaneOf<double> : LaneIs<double> {};
 
-template <class T>
-SC_SDK_INLINE Vector<T> splats(T value) {
+template <class T_>
+SC_SDK_INLINE Vector<T_> splats(T_ value) {
   // A sum with zero, which is how the compiler's vectors broadcast, would not keep a float's bits under every
   // rounding mode.
-  Vector<T> result;
-  if constexpr (sizeof(T) == 1) {
-    result.raw = Raw<T>{value, value, value, value, value, value, value, value,
-                        value, value, value, value, value, value, value, value};
-  } else if constexpr (sizeof(T) == 2) {
-    result.raw = Raw<T>{value, value, value, value, value, value, value, value};
-  } else if constexpr (sizeof(T) == 4) {
-    result.raw = Raw<T>{value, value, value, value};
+  Vector<T_> result;
+  if constexpr (sizeof(T_) == 1) {
+    result.raw = Raw<T_>{value, value, value, value, value, value, value, value,
+                         value, value, value, value, value, value, value, value};
+  } else if constexpr (sizeof(T_) == 2) {
+    result.raw = Raw<T_>{value, value, value, value, value, value, value, value};
+  } else if constexpr (sizeof(T_) == 4) {
+    result.raw = Raw<T_>{value, value, value, value};
   } else {
-    result.raw = Raw<T>{value, value};
+    result.raw = Raw<T_>{value, value};
   }
   return result;
 }
@@ -62,28 +62,28 @@ SC_SDK_INLINE Vector<T> splats(T value) {
 }  // namespace softcell_sdk
 
 /// The scalar in every lane.
-template <class S, class T = typename softcell_sdk::LaneOf<S>::Type>
-SC_SDK_INLINE softcell_sdk::Vector<T> spu_splats(S value) {
-  return softcell_sdk::splats(static_cast<T>(value));
+template <class S_, class T_ = typename softcell_sdk::LaneOf<S_>::Type>
+SC_SDK_INLINE softcell_sdk::Vector<T_> spu_splats(S_ value) {
+  return softcell_sdk::splats(static_cast<T_>(value));
 }
 
 /// The scalar in lane `element` modulo the number of lanes. The SPU leaves the others undefined; here they
 /// hold it too.
-template <class S, class T = typename softcell_sdk::LaneOf<S>::Type>
-SC_SDK_INLINE softcell_sdk::Vector<T> spu_promote(S value, int) {
-  return softcell_sdk::splats(static_cast<T>(value));
+template <class S_, class T_ = typename softcell_sdk::LaneOf<S_>::Type>
+SC_SDK_INLINE softcell_sdk::Vector<T_> spu_promote(S_ value, int) {
+  return softcell_sdk::splats(static_cast<T_>(value));
 }
 
 /// Lane `element` modulo the number of lanes.
-template <class T>
-SC_SDK_INLINE T spu_extract(softcell_sdk::Vector<T> a, int element) {
-  return a.raw[element & (a.kLanes - 1)];
+template <class T_>
+SC_SDK_INLINE T_ spu_extract(softcell_sdk::Vector<T_> a_, int element) {
+  return a_.raw[element & (a_.kLanes - 1)];
 }
 
 /// `a` with the scalar in lane `element` modulo the number of lanes.
-template <class T>
-SC_SDK_INLINE softcell_sdk::Vector<T> spu_insert(softcell_sdk::Scalar<T> value, softcell_sdk::Vector<T> a,
-                                                 int element) {
-  a.raw[element & (a.kLanes - 1)] = value;
-  return a;
+template <class T_>
+SC_SDK_INLINE softcell_sdk::Vector<T_> spu_insert(softcell_sdk::Scalar<T_> value, softcell_sdk::Vector<T_> a_,
+                                                  int element) {
+  a_.raw[element & (a_.kLanes - 1)] = value;
+  return a_;
 }

@@ -7,8 +7,8 @@
 namespace softcell_sdk {
 /// Stands for whatever the caller expects, so that the sentence is all that is said.
 struct Anything {
-  template <class T>
-  operator T() const;
+  template <class T_>
+  operator T_() const;
 };
 }  // namespace softcell_sdk
 

@@ -11,24 +11,24 @@
 namespace softcell_sdk {
 
 // Sums, differences and products: integers wrap, floats and doubles are those of the SPU.
-#define SC_SDK_ARITHMETIC(op, function)                           \
-  template <class T>                                              \
-  SC_SDK_INLINE Vector<T> operator op(Vector<T> a, Vector<T> b) { \
-    if constexpr (kFloating<T>) {                                 \
-      return function(a, b);                                      \
-    } else {                                                      \
-      return make<Vector<T>>(wrap(a) op wrap(b));                 \
-    }                                                             \
+#define SC_SDK_ARITHMETIC(op, function)                                \
+  template <class T_>                                                  \
+  SC_SDK_INLINE Vector<T_> operator op(Vector<T_> a_, Vector<T_> b_) { \
+    if constexpr (kFloating<T_>) {                                     \
+      return function(a_, b_);                                         \
+    } else {                                                           \
+      return make<Vector<T_>>(wrap(a_) op wrap(b_));                   \
+    }                                                                  \
   }
 SC_SDK_ARITHMETIC(+, spu_add)
 SC_SDK_ARITHMETIC(-, spu_sub)
 SC_SDK_ARITHMETIC(*, spu_mul)
 #undef SC_SDK_ARITHMETIC
 
-#define SC_SDK_LANES(op)                                          \
-  template <class T>                                              \
-  SC_SDK_INLINE Vector<T> operator op(Vector<T> a, Vector<T> b) { \
-    return make<Vector<T>>(a.raw op b.raw);                       \
+#define SC_SDK_LANES(op)                                               \
+  template <class T_>                                                  \
+  SC_SDK_INLINE Vector<T_> operator op(Vector<T_> a_, Vector<T_> b_) { \
+    return make<Vector<T_>>(a_.raw op b_.raw);                         \
   }
 SC_SDK_LANES(/)
 SC_SDK_LANES(%)
@@ -39,76 +39,76 @@ SC_SDK_LANES(<<)
 SC_SDK_LANES(>>)
 #undef SC_SDK_LANES
 
-template <class T>
-using Mask = Vector<Signed<T>>;
-template <class T>
-SC_SDK_INLINE Mask<T> operator==(Vector<T> a, Vector<T> b) {
-  if constexpr (kFloating<T>) {
-    return Mask<T>(spu_cmpeq(a, b));
+template <class T_>
+using Mask = Vector<Signed<T_>>;
+template <class T_>
+SC_SDK_INLINE Mask<T_> operator==(Vector<T_> a_, Vector<T_> b_) {
+  if constexpr (kFloating<T_>) {
+    return Mask<T_>(spu_cmpeq(a_, b_));
   } else {
-    return make<Mask<T>>(a.raw == b.raw);
+    return make<Mask<T_>>(a_.raw == b_.raw);
   }
 }
-template <class T>
-SC_SDK_INLINE Mask<T> operator>(Vector<T> a, Vector<T> b) {
-  if constexpr (kFloating<T>) {
-    return Mask<T>(spu_cmpgt(a, b));
+template <class T_>
+SC_SDK_INLINE Mask<T_> operator>(Vector<T_> a_, Vector<T_> b_) {
+  if constexpr (kFloating<T_>) {
+    return Mask<T_>(spu_cmpgt(a_, b_));
   } else {
-    return make<Mask<T>>(a.raw > b.raw);
+    return make<Mask<T_>>(a_.raw > b_.raw);
   }
 }
-template <class T>
-SC_SDK_INLINE Vector<T> operator~(Vector<T> a) {
-  return make<Vector<T>>(~a.raw);
+template <class T_>
+SC_SDK_INLINE Vector<T_> operator~(Vector<T_> a_) {
+  return make<Vector<T_>>(~a_.raw);
 }
-template <class T>
-SC_SDK_INLINE Mask<T> operator!=(Vector<T> a, Vector<T> b) {
-  return ~(a == b);
+template <class T_>
+SC_SDK_INLINE Mask<T_> operator!=(Vector<T_> a_, Vector<T_> b_) {
+  return ~(a_ == b_);
 }
-template <class T>
-SC_SDK_INLINE Mask<T> operator<(Vector<T> a, Vector<T> b) {
-  return b > a;
+template <class T_>
+SC_SDK_INLINE Mask<T_> operator<(Vector<T_> a_, Vector<T_> b_) {
+  return b_ > a_;
 }
-template <class T>
-SC_SDK_INLINE Mask<T> operator>=(Vector<T> a, Vector<T> b) {
-  return (a > b) | (a == b);
+template <class T_>
+SC_SDK_INLINE Mask<T_> operator>=(Vector<T_> a_, Vector<T_> b_) {
+  return (a_ > b_) | (a_ == b_);
 }
-template <class T>
-SC_SDK_INLINE Mask<T> operator<=(Vector<T> a, Vector<T> b) {
-  return (b > a) | (a == b);
+template <class T_>
+SC_SDK_INLINE Mask<T_> operator<=(Vector<T_> a_, Vector<T_> b_) {
+  return (b_ > a_) | (a_ == b_);
 }
-template <class T>
-SC_SDK_INLINE Vector<T> operator+(Vector<T> a) {
-  return a;
+template <class T_>
+SC_SDK_INLINE Vector<T_> operator+(Vector<T_> a_) {
+  return a_;
 }
-template <class T>
-SC_SDK_INLINE Vector<T> operator-(Vector<T> a) {
-  if constexpr (kFloating<T>) {
-    return make<Vector<T>>(-a.raw);
+template <class T_>
+SC_SDK_INLINE Vector<T_> operator-(Vector<T_> a_) {
+  if constexpr (kFloating<T_>) {
+    return make<Vector<T_>>(-a_.raw);
   } else {
-    return make<Vector<T>>(0 - wrap(a));
+    return make<Vector<T_>>(0 - wrap(a_));
   }
 }
 
 // One operand a scalar; and assignments, to volatile vectors too.
-#define SC_SDK_WITH_SCALAR(op)                               \
-  template <class T>                                         \
-  SC_SDK_INLINE auto operator op(Vector<T> a, Scalar<T> b) { \
-    return a op splats<T>(b);                                \
-  }                                                          \
-  template <class T>                                         \
-  SC_SDK_INLINE auto operator op(Scalar<T> a, Vector<T> b) { \
-    return splats<T>(a) op b;                                \
+#define SC_SDK_WITH_SCALAR(op)                                   \
+  template <class T_>                                            \
+  SC_SDK_INLINE auto operator op(Vector<T_> a_, Scalar<T_> b_) { \
+    return a_ op splats<T_>(b_);                                 \
+  }                                                              \
+  template <class T_>                                            \
+  SC_SDK_INLINE auto operator op(Scalar<T_> a_, Vector<T_> b_) { \
+    return splats<T_>(a_) op b_;                                 \
   }
-#define SC_SDK_ASSIGNING(op)                                            \
-  SC_SDK_WITH_SCALAR(op)                                                \
-  template <class T, class Operand>                                     \
-  SC_SDK_INLINE Vector<T>& operator op##=(Vector<T>& a, Operand b) {    \
-    return a = a op b;                                                  \
-  }                                                                     \
-  template <class T, class Operand>                                     \
-  SC_SDK_INLINE void operator op##=(volatile Vector<T>& a, Operand b) { \
-    a = Vector<T>(a) op b;                                              \
+#define SC_SDK_ASSIGNING(op)                                               \
+  SC_SDK_WITH_SCALAR(op)                                                   \
+  template <class T_, class Operand>                                       \
+  SC_SDK_INLINE Vector<T_>& operator op##=(Vector<T_>& a_, Operand b_) {   \
+    return a_ = a_ op b_;                                                  \
+  }                                                                        \
+  template <class T_, class Operand>                                       \
+  SC_SDK_INLINE void operator op##=(volatile Vector<T_>& a_, Operand b_) { \
+    a_ = Vector<T_>(a_) op b_;                                             \
   }
 SC_SDK_ASSIGNING(+)
 SC_SDK_ASSIGNING(-)
@@ -129,24 +129,24 @@ SC_SDK_WITH_SCALAR(>=)
 #undef SC_SDK_ASSIGNING
 #undef SC_SDK_WITH_SCALAR
 
-template <class T>
-SC_SDK_INLINE Vector<T>& operator++(Vector<T>& a) {
-  return a += 1;
+template <class T_>
+SC_SDK_INLINE Vector<T_>& operator++(Vector<T_>& a_) {
+  return a_ += 1;
 }
-template <class T>
-SC_SDK_INLINE Vector<T>& operator--(Vector<T>& a) {
-  return a -= 1;
+template <class T_>
+SC_SDK_INLINE Vector<T_>& operator--(Vector<T_>& a_) {
+  return a_ -= 1;
 }
-template <class T>
-SC_SDK_INLINE Vector<T> operator++(Vector<T>& a, int) {
-  const Vector<T> before = a;
-  a += 1;
+template <class T_>
+SC_SDK_INLINE Vector<T_> operator++(Vector<T_>& a_, int) {
+  const Vector<T_> before = a_;
+  a_ += 1;
   return before;
 }
-template <class T>
-SC_SDK_INLINE Vector<T> operator--(Vector<T>& a, int) {
-  const Vector<T> before = a;
-  a -= 1;
+template <class T_>
+SC_SDK_INLINE Vector<T_> operator--(Vector<T_>& a_, int) {
+  const Vector<T_> before = a_;
+  a_ -= 1;
   return before;
 }
 

@@ -19,53 +19,54 @@
 
 #include "softcell_lanes.h"
 
-SC_SDK_INLINE vec_float4 spu_add(vec_float4 a, vec_float4 b) {
-  return softcell_sdk::make<vec_float4>(_mm_add_ps(a.raw, b.raw));
+SC_SDK_INLINE vec_float4 spu_add(vec_float4 a_, vec_float4 b_) {
+  return softcell_sdk::make<vec_float4>(_mm_add_ps(a_.raw, b_.raw));
 }
-SC_SDK_INLINE vec_float4 spu_sub(vec_float4 a, vec_float4 b) {
-  return softcell_sdk::make<vec_float4>(_mm_sub_ps(a.raw, b.raw));
+SC_SDK_INLINE vec_float4 spu_sub(vec_float4 a_, vec_float4 b_) {
+  return softcell_sdk::make<vec_float4>(_mm_sub_ps(a_.raw, b_.raw));
 }
-SC_SDK_INLINE vec_float4 spu_mul(vec_float4 a, vec_float4 b) {
-  return softcell_sdk::make<vec_float4>(_mm_fmadd_ps(a.raw, b.raw, softcell_sdk::zero_floats()));
+SC_SDK_INLINE vec_float4 spu_mul(vec_float4 a_, vec_float4 b_) {
+  return softcell_sdk::make<vec_float4>(_mm_fmadd_ps(a_.raw, b_.raw, softcell_sdk::zero_floats()));
 }
 /// a * b + c, rounded once.
-SC_SDK_INLINE vec_float4 spu_madd(vec_float4 a, vec_float4 b, vec_float4 c) {
-  return softcell_sdk::make<vec_float4>(_mm_fmadd_ps(a.raw, b.raw, c.raw));
+SC_SDK_INLINE vec_float4 spu_madd(vec_float4 a_, vec_float4 b_, vec_float4 c_) {
+  return softcell_sdk::make<vec_float4>(_mm_fmadd_ps(a_.raw, b_.raw, c_.raw));
 }
 /// a * b - c, rounded once.
-SC_SDK_INLINE vec_float4 spu_msub(vec_float4 a, vec_float4 b, vec_float4 c) {
-  return softcell_sdk::make<vec_float4>(_mm_fmsub_ps(a.raw, b.raw, c.raw));
+SC_SDK_INLINE vec_float4 spu_msub(vec_float4 a_, vec_float4 b_, vec_float4 c_) {
+  return softcell_sdk::make<vec_float4>(_mm_fmsub_ps(a_.raw, b_.raw, c_.raw));
 }
 /// c - a * b, rounded once.
-SC_SDK_INLINE vec_float4 spu_nmsub(vec_float4 a, vec_float4 b, vec_float4 c) {
-  return softcell_sdk::make<vec_float4>(_mm_fnmadd_ps(a.raw, b.raw, c.raw));
+SC_SDK_INLINE vec_float4 spu_nmsub(vec_float4 a_, vec_float4 b_, vec_float4 c_) {
+  return softcell_sdk::make<vec_float4>(_mm_fnmadd_ps(a_.raw, b_.raw, c_.raw));
 }
 
 namespace softcell_sdk {
 
 // Floats as integers of the same order. Denormals are zero, and an exponent of 255 is one like any other.
 
-SC_SDK_INLINE Raw<int> magnitude_order(vec_float4 v) {
-  const Raw<int> magnitude = (Raw<int>)v.raw & 0x7FFFFFFF;
+SC_SDK_INLINE Raw<int> magnitude_order(vec_float4 v_) {
+  const Raw<int> magnitude = (Raw<int>)v_.raw & 0x7FFFFFFF;
   return magnitude & (magnitude > 0x007FFFFF);
 }
-SC_SDK_INLINE Raw<int> signed_order(vec_float4 v) {
-  const Raw<int> magnitude = magnitude_order(v), negative = (Raw<int>)v.raw >> 31;
+SC_SDK_INLINE Raw<int> signed_order(vec_float4 v_) {
+  const Raw<int> magnitude = magnitude_order(v_), negative = (Raw<int>)v_.raw >> 31;
   return (magnitude ^ negative) - negative;
 }
 
 }  // namespace softcell_sdk
 
-SC_SDK_INLINE vec_uint4 spu_cmpeq(vec_float4 a, vec_float4 b) {
-  return softcell_sdk::make<vec_uint4>(softcell_sdk::signed_order(a) == softcell_sdk::signed_order(b));
+SC_SDK_INLINE vec_uint4 spu_cmpeq(vec_float4 a_, vec_float4 b_) {
+  return softcell_sdk::make<vec_uint4>(softcell_sdk::signed_order(a_) == softcell_sdk::signed_order(b_));
 }
-SC_SDK_INLINE vec_uint4 spu_cmpgt(vec_float4 a, vec_float4 b) {
-  return softcell_sdk::make<vec_uint4>(softcell_sdk::signed_order(a) > softcell_sdk::signed_order(b));
+SC_SDK_INLINE vec_uint4 spu_cmpgt(vec_float4 a_, vec_float4 b_) {
+  return softcell_sdk::make<vec_uint4>(softcell_sdk::signed_order(a_) > softcell_sdk::signed_order(b_));
 }
 /// Of magnitudes.
-SC_SDK_INLINE vec_uint4 spu_cmpabseq(vec_float4 a, vec_float4 b) {
-  return softcell_sdk::make<vec_uint4>(softcell_sdk::magnitude_order(a) == softcell_sdk::magnitude_order(b));
+SC_SDK_INLINE vec_uint4 spu_cmpabseq(vec_float4 a_, vec_float4 b_) {
+  return softcell_sdk::make<vec_uint4>(softcell_sdk::magnitude_order(a_) ==
+                                       softcell_sdk::magnitude_order(b_));
 }
-SC_SDK_INLINE vec_uint4 spu_cmpabsgt(vec_float4 a, vec_float4 b) {
-  return softcell_sdk::make<vec_uint4>(softcell_sdk::magnitude_order(a) > softcell_sdk::magnitude_order(b));
+SC_SDK_INLINE vec_uint4 spu_cmpabsgt(vec_float4 a_, vec_float4 b_) {
+  return softcell_sdk::make<vec_uint4>(softcell_sdk::magnitude_order(a_) > softcell_sdk::magnitude_order(b_));
 }

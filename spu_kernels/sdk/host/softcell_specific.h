@@ -21,8 +21,8 @@
 
 namespace softcell_sdk {
 
-SC_SDK_INLINE unsigned int word0(qword q) { return q.raw[0]; }
-SC_SDK_INLINE int signed_word0(qword q) { return static_cast<int>(q.raw[0]); }
+SC_SDK_INLINE unsigned int word0(qword q_) { return q_.raw[0]; }
+SC_SDK_INLINE int signed_word0(qword q_) { return static_cast<int>(q_.raw[0]); }
 SC_SDK_INLINE qword words(unsigned int w0, unsigned int w1) { return qword(vec_uint4(w0, w1)); }
 
 template <int Value, int Low, int High>
@@ -54,16 +54,16 @@ SC_SDK_INLINE constexpr int immediate_count() {
 
 // name, type the operands are read as, intrinsic
 #define SC_SDK_SI1(name, A, function) \
-  SC_SDK_INLINE qword name(qword a) { return qword(function(A(a))); }
+  SC_SDK_INLINE qword name(qword a_) { return qword(function(A(a_))); }
 #define SC_SDK_SI2(name, A, B, function) \
-  SC_SDK_INLINE qword name(qword a, qword b) { return qword(function(A(a), B(b))); }
+  SC_SDK_INLINE qword name(qword a_, qword b_) { return qword(function(A(a_), B(b_))); }
 #define SC_SDK_SI3(name, A, B, C, function) \
-  SC_SDK_INLINE qword name(qword a, qword b, qword c) { return qword(function(A(a), B(b), C(c))); }
+  SC_SDK_INLINE qword name(qword a_, qword b_, qword c_) { return qword(function(A(a_), B(b_), C(c_))); }
 /// As above with the operands of the instruction swapped.
 #define SC_SDK_SI2_SWAPPED(name, A, function) \
-  SC_SDK_INLINE qword name(qword a, qword b) { return qword(function(A(b), A(a))); }
+  SC_SDK_INLINE qword name(qword a_, qword b_) { return qword(function(A(b_), A(a_))); }
 #define SC_SDK_SI3_SWAPPED(name, A, function) \
-  SC_SDK_INLINE qword name(qword a, qword b, qword c) { return qword(function(A(b), A(a), A(c))); }
+  SC_SDK_INLINE qword name(qword a_, qword b_, qword c_) { return qword(function(A(b_), A(a_), A(c_))); }
 
 // ---- loads and stores: the sum of addresses wraps at 256 KB, and its low four bits are ignored
 
@@ -73,9 +73,9 @@ SC_SDK_INLINE qword& quadword_at(unsigned int address) {
   return *reinterpret_cast<qword*>(local_store_base() | (address & kLocalStoreMask & ~uintptr_t{15}));
 }
 template <int Offset>
-SC_SDK_INLINE unsigned int displaced(qword a) {
+SC_SDK_INLINE unsigned int displaced(qword a_) {
   static_assert(Offset % 16 == 0, "quadwords lie at multiples of 16 bytes");
-  return word0(a) + static_cast<unsigned int>(immediate<Offset, -0x2000, 0x1FFF>());
+  return word0(a_) + static_cast<unsigned int>(immediate<Offset, -0x2000, 0x1FFF>());
 }
 template <int Address>
 SC_SDK_INLINE constexpr unsigned int absolute() {
@@ -92,11 +92,11 @@ SC_SDK_INLINE constexpr unsigned int absolute() {
   (static_cast<void>(softcell_sdk::quadword_at(softcell_sdk::displaced<(offset)>(ra)) = (rt)))
 #define si_stqa(rt, address) \
   (static_cast<void>(softcell_sdk::quadword_at(softcell_sdk::absolute<(address)>()) = (rt)))
-SC_SDK_INLINE qword si_lqx(qword a, qword b) {
-  return softcell_sdk::quadword_at(softcell_sdk::word0(a) + softcell_sdk::word0(b));
+SC_SDK_INLINE qword si_lqx(qword a_, qword b_) {
+  return softcell_sdk::quadword_at(softcell_sdk::word0(a_) + softcell_sdk::word0(b_));
 }
-SC_SDK_INLINE void si_stqx(qword t, qword a, qword b) {
-  softcell_sdk::quadword_at(softcell_sdk::word0(a) + softcell_sdk::word0(b)) = t;
+SC_SDK_INLINE void si_stqx(qword t_, qword a_, qword b_) {
+  softcell_sdk::quadword_at(softcell_sdk::word0(a_) + softcell_sdk::word0(b_)) = t_;
 }
 
 // ---- controls for si_shufb that put a preferred slot into one place of a quadword
@@ -114,8 +114,8 @@ SC_SDK_INLINE qword insertion_control(unsigned int position) {
   return qword(make<vec_uchar16>(((place + slot) & inside) | ((places() + 16) & ~inside)));
 }
 template <int Width, int Offset>
-SC_SDK_INLINE qword insertion_control_at(qword a) {
-  return insertion_control<Width>(word0(a) + static_cast<unsigned int>(immediate<Offset, -64, 63>()));
+SC_SDK_INLINE qword insertion_control_at(qword a_) {
+  return insertion_control<Width>(word0(a_) + static_cast<unsigned int>(immediate<Offset, -64, 63>()));
 }
 
 }  // namespace softcell_sdk
@@ -124,9 +124,9 @@ SC_SDK_INLINE qword insertion_control_at(qword a) {
 #define si_chd(ra, offset) (softcell_sdk::insertion_control_at<2, (offset)>(ra))
 #define si_cwd(ra, offset) (softcell_sdk::insertion_control_at<4, (offset)>(ra))
 #define si_cdd(ra, offset) (softcell_sdk::insertion_control_at<8, (offset)>(ra))
-#define SC_SDK_INSERTION(name, width)                                                               \
-  SC_SDK_INLINE qword name(qword a, qword b) {                                                      \
-    return softcell_sdk::insertion_control<width>(softcell_sdk::word0(a) + softcell_sdk::word0(b)); \
+#define SC_SDK_INSERTION(name, width)                                                                 \
+  SC_SDK_INLINE qword name(qword a_, qword b_) {                                                      \
+    return softcell_sdk::insertion_control<width>(softcell_sdk::word0(a_) + softcell_sdk::word0(b_)); \
   }
 SC_SDK_INSERTION(si_cbx, 1)
 SC_SDK_INSERTION(si_chx, 2)
@@ -242,8 +242,10 @@ SC_SDK_SI2(si_rotmah, vec_ushort8, vec_short8, spu_rlmaska)
 
 // ---- shifts and rotates of the quadword, by word 0 of the second operand
 
-#define SC_SDK_SI_QUADWORD(name, word, function) \
-  SC_SDK_INLINE qword name(qword a, qword b) { return qword(function(vec_uint4(a), softcell_sdk::word(b))); }
+#define SC_SDK_SI_QUADWORD(name, word, function)                   \
+  SC_SDK_INLINE qword name(qword a_, qword b_) {                   \
+    return qword(function(vec_uint4(a_), softcell_sdk::word(b_))); \
+  }
 SC_SDK_SI_QUADWORD(si_shlqbi, word0, spu_slqw)
 SC_SDK_SI_QUADWORD(si_shlqby, word0, spu_slqwbyte)
 SC_SDK_SI_QUADWORD(si_shlqbybi, word0, spu_slqwbytebc)
@@ -285,11 +287,15 @@ SC_SDK_SI2(si_clgt, vec_uint4, vec_uint4, spu_cmpgt)
 #define si_clgti(ra, imm) (si_clgt((ra), qword(softcell_sdk::immediate_words<(imm)>())))
 
 /// Halts compare word 0.
-SC_SDK_INLINE void si_heq(qword a, qword b) { spu_hcmpeq(softcell_sdk::word0(a), softcell_sdk::word0(b)); }
-SC_SDK_INLINE void si_hgt(qword a, qword b) {
-  spu_hcmpgt(softcell_sdk::signed_word0(a), softcell_sdk::signed_word0(b));
+SC_SDK_INLINE void si_heq(qword a_, qword b_) {
+  spu_hcmpeq(softcell_sdk::word0(a_), softcell_sdk::word0(b_));
 }
-SC_SDK_INLINE void si_hlgt(qword a, qword b) { spu_hcmpgt(softcell_sdk::word0(a), softcell_sdk::word0(b)); }
+SC_SDK_INLINE void si_hgt(qword a_, qword b_) {
+  spu_hcmpgt(softcell_sdk::signed_word0(a_), softcell_sdk::signed_word0(b_));
+}
+SC_SDK_INLINE void si_hlgt(qword a_, qword b_) {
+  spu_hcmpgt(softcell_sdk::word0(a_), softcell_sdk::word0(b_));
+}
 #define si_heqi(ra, imm) (si_heq((ra), qword(softcell_sdk::immediate_words<(imm)>())))
 #define si_hgti(ra, imm) (si_hgt((ra), qword(softcell_sdk::immediate_words<(imm)>())))
 #define si_hlgti(ra, imm) (si_hlgt((ra), qword(softcell_sdk::immediate_words<(imm)>())))
@@ -379,22 +385,22 @@ SC_SDK_INLINE qword si_from_ptr(const volatile void* pointer) {
   return softcell_sdk::words(softcell_sdk::local_store_address(pointer), 0);
 }
 
-SC_SDK_INLINE signed char si_to_char(qword a) { return static_cast<signed char>(softcell_sdk::word0(a)); }
-SC_SDK_INLINE unsigned char si_to_uchar(qword a) {
-  return static_cast<unsigned char>(softcell_sdk::word0(a));
+SC_SDK_INLINE signed char si_to_char(qword a_) { return static_cast<signed char>(softcell_sdk::word0(a_)); }
+SC_SDK_INLINE unsigned char si_to_uchar(qword a_) {
+  return static_cast<unsigned char>(softcell_sdk::word0(a_));
 }
-SC_SDK_INLINE short si_to_short(qword a) { return static_cast<short>(softcell_sdk::word0(a)); }
-SC_SDK_INLINE unsigned short si_to_ushort(qword a) {
-  return static_cast<unsigned short>(softcell_sdk::word0(a));
+SC_SDK_INLINE short si_to_short(qword a_) { return static_cast<short>(softcell_sdk::word0(a_)); }
+SC_SDK_INLINE unsigned short si_to_ushort(qword a_) {
+  return static_cast<unsigned short>(softcell_sdk::word0(a_));
 }
-SC_SDK_INLINE int si_to_int(qword a) { return softcell_sdk::signed_word0(a); }
-SC_SDK_INLINE unsigned int si_to_uint(qword a) { return softcell_sdk::word0(a); }
-SC_SDK_INLINE long long si_to_llong(qword a) { return vec_llong2(a).raw[0]; }
-SC_SDK_INLINE unsigned long long si_to_ullong(qword a) { return vec_ullong2(a).raw[0]; }
-SC_SDK_INLINE float si_to_float(qword a) { return vec_float4(a).raw[0]; }
-SC_SDK_INLINE double si_to_double(qword a) { return vec_double2(a).raw[0]; }
+SC_SDK_INLINE int si_to_int(qword a_) { return softcell_sdk::signed_word0(a_); }
+SC_SDK_INLINE unsigned int si_to_uint(qword a_) { return softcell_sdk::word0(a_); }
+SC_SDK_INLINE long long si_to_llong(qword a_) { return vec_llong2(a_).raw[0]; }
+SC_SDK_INLINE unsigned long long si_to_ullong(qword a_) { return vec_ullong2(a_).raw[0]; }
+SC_SDK_INLINE float si_to_float(qword a_) { return vec_float4(a_).raw[0]; }
+SC_SDK_INLINE double si_to_double(qword a_) { return vec_double2(a_).raw[0]; }
 /// A pointer into this SPE's local store; null for address 0. Its type is that of an SPU compiler: cast it.
-SC_SDK_INLINE const volatile void* si_to_ptr(qword a) {
-  const uintptr_t address = softcell_sdk::word0(a) & softcell_sdk::kLocalStoreMask;
+SC_SDK_INLINE const volatile void* si_to_ptr(qword a_) {
+  const uintptr_t address = softcell_sdk::word0(a_) & softcell_sdk::kLocalStoreMask;
   return address == 0 ? nullptr : reinterpret_cast<void*>(softcell_sdk::local_store_base() | address);
 }

@@ -12,8 +12,8 @@
 // equal widths it keeps the lanes. What cannot be kept is punning through memory: an array of words read as
 // bytes shows the host's order.
 
-#include <immintrin.h>
 #include <stdint.h>
+#include "softcell_host_vectors.h"
 
 #define SC_SDK_INLINE __attribute__((always_inline)) inline
 // Like the SPU's vectors, ours may look at memory that was written as something else.
@@ -33,100 +33,101 @@ using Bytes = Raw<unsigned char>;
 /// Reads byte j of the result from byte j ^ Flip: from one lane width to another, or from the host's numbers
 /// to the SPU's.
 template <int Flip>
-SC_SDK_INLINE Bytes flip_bytes(Bytes b) {
+SC_SDK_INLINE Bytes flip_bytes(Bytes b_) {
   if constexpr (Flip == 0) {
-    return b;
+    return b_;
   } else {
-    return __builtin_shufflevector(b, b, 0 ^ Flip, 1 ^ Flip, 2 ^ Flip, 3 ^ Flip, 4 ^ Flip, 5 ^ Flip, 6 ^ Flip,
-                                   7 ^ Flip, 8 ^ Flip, 9 ^ Flip, 10 ^ Flip, 11 ^ Flip, 12 ^ Flip, 13 ^ Flip,
-                                   14 ^ Flip, 15 ^ Flip);
+    return __builtin_shufflevector(b_, b_, 0 ^ Flip, 1 ^ Flip, 2 ^ Flip, 3 ^ Flip, 4 ^ Flip, 5 ^ Flip,
+                                   6 ^ Flip, 7 ^ Flip, 8 ^ Flip, 9 ^ Flip, 10 ^ Flip, 11 ^ Flip, 12 ^ Flip,
+                                   13 ^ Flip, 14 ^ Flip, 15 ^ Flip);
   }
 }
 
-/// The storage of N lanes and how to name them. `mutable` is for g++: it takes a const variable of a class
+/// The storage of N_ lanes and how to name them. `mutable` is for g++: it takes a const variable of a class
 /// for read-only memory, unless it has a mutable member, and then keeps it in memory and not in a register.
 /// As on the SPU the lanes left out are zero.
-template <class T, int N>
+template <class T_, int N_>
 struct Lanes;
 
 /// The one lane of `{x}`; a scalar alone is not converted to a vector.
-template <class T>
+template <class T_>
 struct First {
-  constexpr First(T lane) : value(lane) {}
-  T value;
+  constexpr First(T_ lane) : value(lane) {}
+  T_ value;
 };
 
-template <class A, class B>
+template <class A_, class B_>
 struct IfSame {};
-template <class A>
-struct IfSame<A, A> {
+template <class A_>
+struct IfSame<A_, A_> {
   using Type = int;
 };
 
-template <class T>
-struct SC_SDK_REGISTER Lanes<T, 2> {
-  mutable Raw<T> raw;
+template <class T_>
+struct SC_SDK_REGISTER Lanes<T_, 2> {
+  mutable Raw<T_> raw;
   Lanes() = default;
-  constexpr Lanes(First<T> l0) : raw{l0.value} {}
-  constexpr Lanes(T l0, T l1) : raw{l0, l1} {}
+  constexpr Lanes(First<T_> l0) : raw{l0.value} {}
+  constexpr Lanes(T_ l0, T_ l1) : raw{l0, l1} {}
 };
-template <class T>
-struct SC_SDK_REGISTER Lanes<T, 4> {
-  mutable Raw<T> raw;
+template <class T_>
+struct SC_SDK_REGISTER Lanes<T_, 4> {
+  mutable Raw<T_> raw;
   Lanes() = default;
-  constexpr Lanes(First<T> l0) : raw{l0.value} {}
-  constexpr Lanes(T l0, T l1, T l2 = T(), T l3 = T()) : raw{l0, l1, l2, l3} {}
+  constexpr Lanes(First<T_> l0) : raw{l0.value} {}
+  constexpr Lanes(T_ l0, T_ l1, T_ l2 = T_(), T_ l3 = T_()) : raw{l0, l1, l2, l3} {}
 };
-template <class T>
-struct SC_SDK_REGISTER Lanes<T, 8> {
-  mutable Raw<T> raw;
+template <class T_>
+struct SC_SDK_REGISTER Lanes<T_, 8> {
+  mutable Raw<T_> raw;
   Lanes() = default;
-  constexpr Lanes(First<T> l0) : raw{l0.value} {}
-  constexpr Lanes(T l0, T l1, T l2 = T(), T l3 = T(), T l4 = T(), T l5 = T(), T l6 = T(), T l7 = T())
+  constexpr Lanes(First<T_> l0) : raw{l0.value} {}
+  constexpr Lanes(T_ l0, T_ l1, T_ l2 = T_(), T_ l3 = T_(), T_ l4 = T_(), T_ l5 = T_(), T_ l6 = T_(),
+                  T_ l7 = T_())
       : raw{l0, l1, l2, l3, l4, l5, l6, l7} {}
 };
-template <class T>
-struct SC_SDK_REGISTER Lanes<T, 16> {
-  mutable Raw<T> raw;
+template <class T_>
+struct SC_SDK_REGISTER Lanes<T_, 16> {
+  mutable Raw<T_> raw;
   Lanes() = default;
-  constexpr Lanes(First<T> l0) : raw{l0.value} {}
-  constexpr Lanes(T l0, T l1, T l2 = T(), T l3 = T(), T l4 = T(), T l5 = T(), T l6 = T(), T l7 = T(),
-                  T l8 = T(), T l9 = T(), T l10 = T(), T l11 = T(), T l12 = T(), T l13 = T(), T l14 = T(),
-                  T l15 = T())
+  constexpr Lanes(First<T_> l0) : raw{l0.value} {}
+  constexpr Lanes(T_ l0, T_ l1, T_ l2 = T_(), T_ l3 = T_(), T_ l4 = T_(), T_ l5 = T_(), T_ l6 = T_(),
+                  T_ l7 = T_(), T_ l8 = T_(), T_ l9 = T_(), T_ l10 = T_(), T_ l11 = T_(), T_ l12 = T_(),
+                  T_ l13 = T_(), T_ l14 = T_(), T_ l15 = T_())
       : raw{l0, l1, l2, l3, l4, l5, l6, l7, l8, l9, l10, l11, l12, l13, l14, l15} {}
 };
 
 /// One vector type for each lane type. Its operators are in softcell_operators.h.
-template <class T>
-struct SC_SDK_REGISTER Vector : Lanes<T, 16 / sizeof(T)> {
-  using Lane = T;
-  static constexpr int kWidth = sizeof(T);
+template <class T_>
+struct SC_SDK_REGISTER Vector : Lanes<T_, 16 / sizeof(T_)> {
+  using Lane = T_;
+  static constexpr int kWidth = sizeof(T_);
   static constexpr int kLanes = 16 / kWidth;
 
   Vector() = default;
-  using Lanes<T, 16 / sizeof(T)>::Lanes;
+  using Lanes<T_, 16 / sizeof(T_)>::Lanes;
 
   /// A cast from another vector type, qword included.
   template <class Other, int = Other::kWidth>
   SC_SDK_INLINE explicit Vector(const Other& other) {
-    this->raw = (Raw<T>)flip_bytes<(Other::kWidth - 1) ^ (kWidth - 1)>((Bytes)other.raw);
+    this->raw = (Raw<T_>)flip_bytes<(Other::kWidth - 1) ^ (kWidth - 1)>((Bytes)other.raw);
   }
 
   // To and from volatile vectors. As templates they are no copies of the language's own, which stay trivial.
-  template <class U, typename IfSame<U, T>::Type = 0>
-  SC_SDK_INLINE Vector(const volatile Vector<U>& other) {
+  template <class U_, typename IfSame<U_, T_>::Type = 0>
+  SC_SDK_INLINE Vector(const volatile Vector<U_>& other) {
     this->raw = other.raw;
   }
-  template <class U, typename IfSame<U, T>::Type = 0>
-  SC_SDK_INLINE void operator=(Vector<U> other) volatile {
+  template <class U_, typename IfSame<U_, T_>::Type = 0>
+  SC_SDK_INLINE void operator=(Vector<U_> other) volatile {
     this->raw = other.raw;
   }
 
   /// A lane.
-  SC_SDK_INLINE T& operator[](int lane) { return reinterpret_cast<T*>(&this->raw)[lane]; }
-  SC_SDK_INLINE const T& operator[](int lane) const { return reinterpret_cast<const T*>(&this->raw)[lane]; }
-  SC_SDK_INLINE volatile T& operator[](int lane) volatile {
-    return reinterpret_cast<volatile T*>(&this->raw)[lane];
+  SC_SDK_INLINE T_& operator[](int lane) { return reinterpret_cast<T_*>(&this->raw)[lane]; }
+  SC_SDK_INLINE const T_& operator[](int lane) const { return reinterpret_cast<const T_*>(&this->raw)[lane]; }
+  SC_SDK_INLINE volatile T_& operator[](int lane) volatile {
+    return reinterpret_cast<volatile T_*>(&this->raw)[lane];
   }
 };
 
@@ -150,8 +151,8 @@ struct SC_SDK_REGISTER qword {
   mutable softcell_sdk::Raw<unsigned int> raw;
 
   qword() = default;
-  template <class T>
-  SC_SDK_INLINE explicit qword(const softcell_sdk::Vector<T>& v) : raw(vec_uint4(v).raw) {}
+  template <class T_>
+  SC_SDK_INLINE explicit qword(const softcell_sdk::Vector<T_>& v_) : raw(vec_uint4(v_).raw) {}
 };
 
 namespace softcell_sdk {
@@ -166,29 +167,29 @@ struct EnableIf<true> {
 template <bool Condition>
 using If = typename EnableIf<Condition>::Type;
 
-template <class T>
+template <class T_>
 struct Same {
-  using Type = T;
+  using Type = T_;
 };
-/// T, but given by the other arguments: this one is converted to it.
-template <class T>
-using Scalar = typename Same<T>::Type;
+/// T_, but given by the other arguments: this one is converted to it.
+template <class T_>
+using Scalar = typename Same<T_>::Type;
 
-template <class A, class B>
+template <class A_, class B_>
 inline constexpr bool kSame = false;
-template <class A>
-inline constexpr bool kSame<A, A> = true;
+template <class A_>
+inline constexpr bool kSame<A_, A_> = true;
 
-template <class T>
-inline constexpr bool kFloating = kSame<T, float> || kSame<T, double>;
+template <class T_>
+inline constexpr bool kFloating = kSame<T_, float> || kSame<T_, double>;
 /// Bytes, halfwords and words.
-template <class T>
-inline constexpr bool kInteger = !kFloating<T> && sizeof(T) <= 4;
+template <class T_>
+inline constexpr bool kInteger = !kFloating<T_> && sizeof(T_) <= 4;
 /// Halfwords and words: what most integer instructions work on.
-template <class T>
-inline constexpr bool kHalfOrWord = kInteger<T> && sizeof(T) >= 2;
-template <class T>
-inline constexpr bool kWord = kInteger<T> && sizeof(T) == 4;
+template <class T_>
+inline constexpr bool kHalfOrWord = kInteger<T_> && sizeof(T_) >= 2;
+template <class T_>
+inline constexpr bool kWord = kInteger<T_> && sizeof(T_) == 4;
 
 template <int Width>
 struct OfWidth;
@@ -212,22 +213,22 @@ struct OfWidth<8> {
   using Unsigned = unsigned long long;
   using Signed = signed long long;
 };
-/// The integer lane as wide as T: of masks, and of shift counts.
-template <class T>
-using Unsigned = typename OfWidth<sizeof(T)>::Unsigned;
-template <class T>
-using Signed = typename OfWidth<sizeof(T)>::Signed;
+/// The integer lane as wide as T_: of masks, and of shift counts.
+template <class T_>
+using Unsigned = typename OfWidth<sizeof(T_)>::Unsigned;
+template <class T_>
+using Signed = typename OfWidth<sizeof(T_)>::Signed;
 
 /// The sixteen bytes as the host's instructions take them, and back.
-template <class V>
-SC_SDK_INLINE __m128i bits(const V& v) {
-  return (__m128i)v.raw;
+template <class V_>
+SC_SDK_INLINE __m128i bits(const V_& v_) {
+  return (__m128i)v_.raw;
 }
-template <class V, class AnyRaw>
-SC_SDK_INLINE V make(AnyRaw raw) {
+template <class V_, class AnyRaw>
+SC_SDK_INLINE V_ make(AnyRaw raw) {
   static_assert(sizeof(raw) == 16);
-  V result;
-  result.raw = (decltype(V::raw))raw;
+  V_ result;
+  result.raw = (decltype(V_::raw))raw;
   return result;
 }
 
@@ -235,9 +236,9 @@ SC_SDK_INLINE V make(AnyRaw raw) {
 SC_SDK_INLINE __m128 zero_floats() { return (__m128)_mm_setzero_si128(); }
 
 /// Integer arithmetic wraps: it is done on unsigned lanes.
-template <class T>
-SC_SDK_INLINE Raw<Unsigned<T>> wrap(const Vector<T>& v) {
-  return (Raw<Unsigned<T>>)v.raw;
+template <class T_>
+SC_SDK_INLINE Raw<Unsigned<T_>> wrap(const Vector<T_>& v_) {
+  return (Raw<Unsigned<T_>>)v_.raw;
 }
 
 }  // namespace softcell_sdk

@@ -4,6 +4,8 @@
 // and Clang; needs -frounding-math and -ffp-contract=off, since kernels run with truncating arithmetic. What
 // each file holds is said at its top; where results differ from an SPU's is said at the top of
 // softcell_single.h and softcell_double.h.
+//
+// Names of one letter end in an underscore, in all headers that a program includes: it may have macros such as N.
 
 #ifndef __cplusplus
 #include "../c/softcell_c.h"

@@ -13,34 +13,60 @@ using Function = void();
 extern Function* const softcell_constructors[] __attribute__((visibility("hidden")));
 extern Function* const softcell_constructors_end[] __attribute__((visibility("hidden")));
 
-/// The program's main, whatever its parameters: what it does not take is left alone.
-int softcell_main(uint64_t, uint64_t, uint64_t, uint64_t) __attribute__((visibility("hidden")));
+/// The program's main, whatever its parameters: what it does not take is left alone. Numbers and vectors come in registers of different kinds.
+using Words = softcell_sdk::Raw<unsigned int>;
+int softcell_main(uint64_t, uint64_t, uint64_t, uint64_t, Words, Words, Words)
+    __attribute__((visibility("hidden")));
 
 /// Where the image is entered.
-int softcell_start(uint64_t first, uint64_t second, uint64_t third, uint64_t fourth) {
+int softcell_start(uint64_t first, uint64_t second, uint64_t third, uint64_t fourth, Words one, Words two,
+                   Words three) {
   for (Function* const* constructor = softcell_constructors; constructor != softcell_constructors_end;
        ++constructor)
     (*constructor)();
-  exit(softcell_main(first, second, third, fourth));
+  exit(softcell_main(first, second, third, fourth, one, two, three));
 }
 
-static Function* at_exit[32];
+// What is to be called when the program ends: the last first.
+
+struct AtExit {
+  AtExit* before;
+  void (*function)(void*);
+  void* object;
+};
+static AtExit* at_exit;
+static AtExit first_at_exit[32];
 static unsigned int at_exit_count;
 
+static void add_at_exit(AtExit* entry, void (*function)(void*), void* object) {
+  *entry = {at_exit, function, object};
+  at_exit = entry;
+}
+
+/// The object is the function that was given to atexit().
+static void call_function(void* function) { reinterpret_cast<Function*>(function)(); }
+
 int atexit(Function* function) {
-  if (at_exit_count == sizeof at_exit / sizeof at_exit[0]) return -1;
-  at_exit[at_exit_count++] = function;
+  if (at_exit_count == sizeof first_at_exit / sizeof first_at_exit[0]) return -1;
+  add_at_exit(&first_at_exit[at_exit_count++], &call_function, reinterpret_cast<void*>(function));
   return 0;
 }
 
-/// Static objects are not destroyed: what they hold ends with the local store.
-int __cxa_atexit(void (*)(void*), void*, void*) { return 0; }
+/// The destructor of a static object. Where the heap has no room for the note, the object is not destroyed.
+int __cxa_atexit(void (*destructor)(void*), void* object, void*) {
+  auto* const entry = static_cast<AtExit*>(malloc(sizeof(AtExit)));
+  if (entry == nullptr) return -1;
+  add_at_exit(entry, destructor, object);
+  return 0;
+}
 void* __dso_handle = nullptr;
 
-void __cxa_pure_virtual() { abort(); }
-
 void exit(int status) {
-  while (at_exit_count != 0) at_exit[--at_exit_count]();
+  while (at_exit != nullptr) {
+    const AtExit* const last = at_exit;
+    at_exit = last->before;
+    last->function(last->object);
+  }
   _exit(status);
 }
 

@@ -1,7 +1,7 @@
 /* Mailboxes, signals and proxy DMA by plain loads and stores of the problem state. */
 #include "run_in_thread.h"
 
-extern spe_program_handle_t echoes, collects_signals, sums_its_store;
+extern spe_program_handle_t echoes, collects_signals, sums_its_store, pauses;
 
 static unsigned int words[256] __attribute__((aligned(128)));
 
@@ -75,10 +75,29 @@ static void transfer(void) {
   CHECK(end_spe(&spe) == 0);
 }
 
+static void stop(void) {
+  spe_context_ptr_t spe = spe_context_create(SPE_MAP_PS, NULL);
+  unsigned int entry = SPE_DEFAULT_ENTRY;
+  volatile spe_spu_control_area_t* control =
+      (volatile spe_spu_control_area_t*)spe_ps_area_get(spe, SPE_CONTROL_AREA);
+  unsigned int status = control->SPU_Status;
+  CHECK(status == 0);
+  CHECK(spe_program_load(spe, &pauses) == 0);
+  CHECK(spe_context_run(spe, &entry, 0, NULL, (void*)7, NULL) == 0x11);
+  status = control->SPU_Status;
+  CHECK(status == (0x11 << 16 | 2));
+  while (spe_context_run(spe, &entry, 0, NULL, NULL, NULL) > 0) {
+  }
+  status = control->SPU_Status;
+  CHECK(status == (0x200Au << 16 | 2));
+  CHECK(spe_context_destroy(spe) == 0);
+}
+
 int main(void) {
   ping();
   signal_it();
   transfer();
+  stop();
   puts("ok");
   return 0;
 }

@@ -27,6 +27,12 @@ int main(uint64_t, uint64_t argp, uint64_t envp) {
     case 7:
       mfc_get(buffer, envp, 64, 0, 0, 0);
       return static_cast<int>(buffer[0]);  // not waited for
+    case 8:
+      spu_hcmpeq(static_cast<int>(argp), 8);
+      break;
+    case 9:
+      spu_writech(99, 0);
+      break;
     default:
       break;
   }

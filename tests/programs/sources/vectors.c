@@ -83,6 +83,15 @@ static void intrinsics(void) {
   CHECK(si_to_float(si_fm(si_from_float(1.5f), si_from_float(2.0f))) == 3.0f);
 }
 
+static void doubles(void) {
+  const vec_double2 v = {-0.0, 1.0 / 0.0}, w = {0.0 / 0.0, -2.5};
+  CHECK(spu_extract(spu_testsv(v, SPU_SV_NEG_ZERO | SPU_SV_NAN), 0) == ~0ull &&
+        spu_extract(spu_testsv(v, SPU_SV_NEG_ZERO), 1) == 0);
+  CHECK(spu_extract(spu_testsv(v, SPU_SV_POS_INFINITY), 1) == ~0ull &&
+        spu_extract(spu_testsv(v, SPU_SV_NEG_INFINITY), 1) == 0);
+  CHECK(spu_extract(spu_testsv(w, SPU_SV_NAN), 0) == ~0ull && spu_extract(spu_testsv(w, 0x7F), 1) == 0);
+}
+
 static void memory(unsigned long long ea) {
   union quadword q = {.v = {1, 2, 3, 4}};
   vec_float4* const row = (vec_float4*)particles;
@@ -95,6 +104,7 @@ int main(unsigned long long id, unsigned long long argp, unsigned long long envp
   operators();
   casts();
   intrinsics();
+  doubles();
   memory(argp);
   return failures;
 }

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <chrono>
+#include <thread>
+
 #include "softcell/base/assert.h"
 
 namespace softcell::tool {
@@ -22,6 +25,24 @@ ls_sim::SpeOptions spe_options(const KernelTask& task, const RunSettings& settin
   ls_sim::time_by(settings.timing, options);
   return options;
 }
+
+/// While the object lives, it ends the group's runs when it is wanted.
+class Interrupter {
+ public:
+  Interrupter(ls_sim::SpeGroup& group, const std::function<bool()>& wanted) {
+    if (!wanted) return;
+    thread_ = std::jthread([&group, &wanted](const std::stop_token& end) {
+      while (!end.stop_requested()) {
+        if (wanted()) return group.stop_runs();
+        std::this_thread::sleep_for(kPeriod);
+      }
+    });
+  }
+
+ private:
+  static constexpr std::chrono::milliseconds kPeriod{5};
+  std::jthread thread_;
+};
 
 }  // namespace
 
@@ -57,6 +78,7 @@ KernelRun run_kernel(dma::AddressSpace& memory, const ls_sim::KernelImage& image
     group.prepare(spe, image, buffers.arguments(spe));
   }
   for (int spe = 0; spe < task.spes; ++spe) group.start(spe);  // which may write to the others' local stores
+  const Interrupter interrupter(group, settings.interrupted);
   KernelRun run;
   for (int spe = 0; spe < task.spes; ++spe) {
     SpeRun& one = run.spes.emplace_back();

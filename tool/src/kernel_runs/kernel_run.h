@@ -1,6 +1,7 @@
 #pragma once
 // One run of a kernel on one or more SPEs.
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -25,6 +26,8 @@ struct RunSettings {
   ls_sim::Debugger* debugger = nullptr;
   ls_sim::Trace* trace = nullptr;
   const ls_sim::HostCalls* host_calls = nullptr;
+  /// Asked every few milliseconds: true ends the run as its deadline would. Empty: nobody wants that.
+  std::function<bool()> interrupted = {};
 };
 
 /// What one SPE did, and what it left in its outbound mailboxes.

@@ -171,7 +171,10 @@ class RunVerb final : public Verb {
     r->add_flag("--quiet", options_.quiet, "No progress bar");
     add_trace_option(*r, options_.trace);
     add_json_option(*r, options_.json, "how it ended, statistics, findings and faults");
-    r->callback([this, &chosen] { chosen = [this] { return run_program(options_); }; });
+    r->callback([this, r, &chosen] {
+      options_.dma_is_given = r->count("--dma") != 0;
+      chosen = [this] { return run_program(options_); };
+    });
   }
 
  private:
@@ -184,7 +187,7 @@ int run_program(const RunOptions& options) {
   static_cast<void>(parse_dma(options.dma));
   if (options.seeds != 0 && options.trace)
     throw UsageError("--trace with --seeds: trace one of the runs, with --dma random:SEED --turns");
-  if (options.seeds != 0 && options.dma != "eager")
+  if (options.seeds != 0 && (options.dma_is_given || options.dma != "eager"))
     throw UsageError("--dma with --seeds: the seeds are those of --dma random:1 to random:SEEDS");
   OutputFiles files({{"--json", options.json}});
   base::WholeFile* const json = files.open(options.json);

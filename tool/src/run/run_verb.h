@@ -15,6 +15,7 @@ namespace softcell::tool {
 struct RunOptions {
   std::vector<std::string> words;  ///< the program and its arguments
   std::string dma = "eager";
+  bool dma_is_given = false;  ///< on the command line
   bool turns = false, checked = false, allocations = false, low_memory = false, quiet = false;
   std::optional<std::uint64_t> deadline_ms = {};  ///< none: what `turns` and `seeds` ask for
   std::uint64_t seeds = 0;                        ///< 0: one run

@@ -69,8 +69,12 @@ class Explorer {
     ++tried_;
     buffers_.reset();
     KernelRun run = run_kernel(memory_, image_, buffers_, options_.task,
-                               {.schedule = schedule_of(last_seed()), .clock = ls_sim::Clock::kSimulated});
-    if (tried_ == 1) {
+                               {.schedule = schedule_of(last_seed()),
+                                .clock = ls_sim::Clock::kSimulated,
+                                .interrupted = [this] { return guard_.interrupted(); }});
+    if (guard_.interrupted()) {  // perhaps within the run
+      --tried_;
+    } else if (tried_ == 1) {
       first_run_ = std::move(run);
       first_ = outcome(first_run_, buffers_);
     } else {

@@ -59,9 +59,10 @@ Words checked_files(const Words& files, ScratchFolder& scratch, std::string& mis
   return checked;
 }
 
-/// One flavour. @param quiet  the linker's messages are dropped. @return  the linker's status.
+/// One flavour. @param quiet  the linker's messages are dropped. @param budget  of image and stack. @return  the linker's status.
 int link_flavour(const Words& files, const std::filesystem::path& output, bool checked, std::uint32_t stack,
-                 const Options& options, const Places& places, bool quiet) {
+                 const Options& options, const Places& places, bool quiet,
+                 std::uint32_t budget = kLocalStoreBytes) {
   Words command{settings::kLinker,
                 "-m",
                 "elf32_x86_64",
@@ -73,7 +74,7 @@ int link_flavour(const Words& files, const std::filesystem::path& output, bool c
     append(command, {"--defsym", symbol + "=" + std::to_string(value)});
   };
   define("softcell_stack_bytes", stack);
-  define("softcell_budget_bytes", kLocalStoreBytes);
+  define("softcell_budget_bytes", budget);
   define("softcell_is_checked", checked ? 1 : 0);
   define("softcell_is_program", 1);
   define("softcell_image_begin", 0x80);
@@ -88,26 +89,47 @@ int link_flavour(const Words& files, const std::filesystem::path& output, bool c
   return run(command, quiet);
 }
 
-/// What the image leaves free is for the stack and the heap: half for each.
-std::uint32_t stack_beside(const std::filesystem::path& image) {
+/// Where the image ends, and what is free begins.
+std::uint32_t end_of(const std::filesystem::path& image) {
   const std::string symbols = output_of({"nm", image.string()});
   std::istringstream lines(symbols);
   for (std::string line; std::getline(lines, line);) {
     if (!line.ends_with(" _end")) continue;
-    const auto end = static_cast<std::uint32_t>(std::strtoul(line.c_str(), nullptr, 16));
-    const std::uint32_t free = kLocalStoreBytes - std::min(end, kLocalStoreBytes);
-    return std::clamp(free / 2 / 16 * 16, kLeastStack, kMostStack);
+    return static_cast<std::uint32_t>(std::strtoul(line.c_str(), nullptr, 16));
   }
   throw std::runtime_error(image.string() + " has no symbol _end");
+}
+
+/// What the image leaves free is for the stack and the heap: half for each.
+std::uint32_t stack_beside(const std::filesystem::path& image) {
+  const std::uint32_t free = kLocalStoreBytes - std::min(end_of(image), kLocalStoreBytes);
+  return std::clamp(free / 2 / 16 * 16, kLeastStack, kMostStack);
+}
+
+/// After a link that has failed: a sentence with numbers if the program is too large. Else the linker says what is wrong.
+void refuse_if_too_large(const Words& files, const std::filesystem::path& output, std::uint32_t stack,
+                         const Options& options, const Places& places) {
+  constexpr std::uint32_t kNoBudget = 0x7FFF'FFFF;
+  if (link_flavour(files, output, false, stack, options, places, true, kNoBudget) != 0) return;
+  const std::uint64_t image = end_of(output), all = image + stack;
+  std::filesystem::remove(output);
+  if (all <= kLocalStoreBytes) return;
+  throw std::runtime_error("the program does not fit into the local store: code and data take " +
+                           std::to_string(image) + " bytes and the stack " + std::to_string(stack) + ", " +
+                           std::to_string(all - kLocalStoreBytes) + " more than its " +
+                           std::to_string(kLocalStoreBytes));
 }
 
 /// Links a flavour with as much stack as there is room for. @return  the linker's status.
 int link_with_stack(const Words& files, const std::filesystem::path& output, bool checked,
                     const Options& options, const Places& places, bool quiet) {
-  const std::uint32_t more = checked ? settings::kCheckedStackBytes : 0;
-  const int status = link_flavour(files, output, checked, options.stack_bytes.value_or(kLeastStack) + more,
-                                  options, places, quiet);
-  if (status != 0 || options.stack_bytes) return status;
+  const std::uint32_t least =
+      options.stack_bytes.value_or(kLeastStack) + (checked ? settings::kCheckedStackBytes : 0);
+  // Quiet: what the linker has to say is said once, by the link that follows.
+  const int status = link_flavour(files, output, checked, least, options, places, true);
+  if (status != 0 && !quiet) refuse_if_too_large(files, output, least, options, places);
+  if (status != 0 || options.stack_bytes)
+    return link_flavour(files, output, checked, least, options, places, quiet);
   const std::uint32_t stack = stack_beside(output);
   return link_flavour(files, output, checked, stack, options, places, quiet);
 }

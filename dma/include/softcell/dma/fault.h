@@ -48,6 +48,7 @@ struct Fault {
   std::string place = {};                  ///< source file and line, "saxpy.cpp:41"; empty: unknown
   std::optional<MfcCommand> command = {};  ///< set when a DMA command broke the rule
   std::string detail = {};                 ///< what was found and what is allowed; no full stop
+  bool is_of_proxy = false;                ///< of a proxy command, which the PPU side gives, not a kernel
 
   /// All of it in one line: "SPE 2, kernel skin, skin.cpp:41: ea-alignment: getf tag 3, LSA 0x00400, EA
   /// 0x5EA010000008, 16 bytes: EA is ..."

@@ -37,6 +37,8 @@ struct EntryArguments {
   std::uint64_t envp = 0;
   std::uint64_t fourth = 0;                       ///< only for programs that thread groups start
   EntryState entry_state = EntryState::kLibspe2;  ///< only for SPU programs
+  /// The words of three registers, for a main of a native kernel that takes vectors; nothing: they begin with the three numbers.
+  std::optional<std::array<std::uint32_t, 12>> registers = {};
 };
 
 /// The result of a run, which ends by main's return (or spu_stop) with a stop code, or by a fault.

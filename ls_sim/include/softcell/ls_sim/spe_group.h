@@ -133,6 +133,9 @@ class SpeGroup {
   /// @throws std::logic_error  the SPE was never started.
   RunResult wait(int spe);
 
+  /// Ends all runs in progress, and those that begin later, as their deadline would. Any thread.
+  void stop_runs();
+
   /// Waits until each SPE has ended its run or sleeps at a channel where only the PPU side can wake it.
   /// @pre  SPEs take turns: Interleaving::kTurns or kByTime
   void wait_until_idle();

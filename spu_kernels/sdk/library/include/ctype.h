@@ -4,18 +4,18 @@
 #include <sys/cdefs.h>
 
 __BEGIN_DECLS
-int isalnum(int c);
-int isalpha(int c);
-int isblank(int c);
-int iscntrl(int c);
-int isdigit(int c);
-int isgraph(int c);
-int islower(int c);
-int isprint(int c);
-int ispunct(int c);
-int isspace(int c);
-int isupper(int c);
-int isxdigit(int c);
-int tolower(int c);
-int toupper(int c);
+int isalnum(int c_);
+int isalpha(int c_);
+int isblank(int c_);
+int iscntrl(int c_);
+int isdigit(int c_);
+int isgraph(int c_);
+int islower(int c_);
+int isprint(int c_);
+int ispunct(int c_);
+int isspace(int c_);
+int isupper(int c_);
+int isxdigit(int c_);
+int tolower(int c_);
+int toupper(int c_);
 __END_DECLS

@@ -37,11 +37,11 @@
 
 __BEGIN_DECLS
 #define SC_FUNCTION_OF_1(name) \
-  double name(double x);       \
-  float name##f(float x);
-#define SC_FUNCTION_OF_2(name)     \
-  double name(double x, double y); \
-  float name##f(float x, float y);
+  double name(double x_);      \
+  float name##f(float x_);
+#define SC_FUNCTION_OF_2(name)       \
+  double name(double x_, double y_); \
+  float name##f(float x_, float y_);
 SC_FUNCTION_OF_1(sqrt)
 SC_FUNCTION_OF_1(cbrt)
 SC_FUNCTION_OF_1(exp)
@@ -82,25 +82,25 @@ SC_FUNCTION_OF_2(fdim)
 SC_FUNCTION_OF_2(copysign)
 #undef SC_FUNCTION_OF_1
 #undef SC_FUNCTION_OF_2
-float ldexpf(float x, int exponent);
-double ldexp(double x, int exponent);
-float scalbnf(float x, int exponent);
-double scalbn(double x, int exponent);
-float scalblnf(float x, long exponent);
-double scalbln(double x, long exponent);
-float frexpf(float x, int* exponent);
-double frexp(double x, int* exponent);
-int ilogbf(float x);
-int ilogb(double x);
-float fmaf(float x, float y, float z);
-long lrintf(float x);
-long lrint(double x);
-long long llrintf(float x);
-long long llrint(double x);
-long lroundf(float x);
-long lround(double x);
-long long llroundf(float x);
-long long llround(double x);
-float modff(float x, float* whole);
-double modf(double x, double* whole);
+float ldexpf(float x_, int exponent);
+double ldexp(double x_, int exponent);
+float scalbnf(float x_, int exponent);
+double scalbn(double x_, int exponent);
+float scalblnf(float x_, long exponent);
+double scalbln(double x_, long exponent);
+float frexpf(float x_, int* exponent);
+double frexp(double x_, int* exponent);
+int ilogbf(float x_);
+int ilogb(double x_);
+float fmaf(float x_, float y_, float z_);
+long lrintf(float x_);
+long lrint(double x_);
+long long llrintf(float x_);
+long long llrint(double x_);
+long lroundf(float x_);
+long lround(double x_);
+long long llroundf(float x_);
+long long llround(double x_);
+float modff(float x_, float* whole);
+double modf(double x_, double* whole);
 __END_DECLS

@@ -10,49 +10,49 @@
 
 #define SC_SIMD_INLINE static inline __attribute__((unused))
 
-SC_SIMD_INLINE vec_float4 fabsf4(vec_float4 v) {
-  return (vec_float4)spu_and((vec_uint4)v, spu_splats(0x7FFFFFFFu));
+SC_SIMD_INLINE vec_float4 fabsf4(vec_float4 v_) {
+  return (vec_float4)spu_and((vec_uint4)v_, spu_splats(0x7FFFFFFFu));
 }
-SC_SIMD_INLINE vec_float4 negatef4(vec_float4 v) {
-  return (vec_float4)spu_xor((vec_uint4)v, spu_splats(0x80000000u));
+SC_SIMD_INLINE vec_float4 negatef4(vec_float4 v_) {
+  return (vec_float4)spu_xor((vec_uint4)v_, spu_splats(0x80000000u));
 }
-SC_SIMD_INLINE vec_float4 copysignf4(vec_float4 v, vec_float4 sign) {
-  return spu_sel(v, sign, spu_splats(0x80000000u));
+SC_SIMD_INLINE vec_float4 copysignf4(vec_float4 v_, vec_float4 sign) {
+  return spu_sel(v_, sign, spu_splats(0x80000000u));
 }
-SC_SIMD_INLINE vec_float4 fminf4(vec_float4 a, vec_float4 b) { return spu_sel(a, b, spu_cmpgt(a, b)); }
-SC_SIMD_INLINE vec_float4 fmaxf4(vec_float4 a, vec_float4 b) { return spu_sel(b, a, spu_cmpgt(a, b)); }
-SC_SIMD_INLINE vec_int4 absi4(vec_int4 v) {
-  return spu_sel(v, spu_sub(spu_splats(0), v), spu_cmpgt(spu_splats(0), v));
+SC_SIMD_INLINE vec_float4 fminf4(vec_float4 a_, vec_float4 b_) { return spu_sel(a_, b_, spu_cmpgt(a_, b_)); }
+SC_SIMD_INLINE vec_float4 fmaxf4(vec_float4 a_, vec_float4 b_) { return spu_sel(b_, a_, spu_cmpgt(a_, b_)); }
+SC_SIMD_INLINE vec_int4 absi4(vec_int4 v_) {
+  return spu_sel(v_, spu_sub(spu_splats(0), v_), spu_cmpgt(spu_splats(0), v_));
 }
 
 /// 1 / v and 1 / sqrt(v): the estimate, refined once.
-SC_SIMD_INLINE vec_float4 recipf4(vec_float4 v) {
-  const vec_float4 e = spu_re(v);
-  return spu_madd(spu_nmsub(v, e, spu_splats(1.0f)), e, e);
+SC_SIMD_INLINE vec_float4 recipf4(vec_float4 v_) {
+  const vec_float4 e_ = spu_re(v_);
+  return spu_madd(spu_nmsub(v_, e_, spu_splats(1.0f)), e_, e_);
 }
-SC_SIMD_INLINE vec_float4 rsqrtf4(vec_float4 v) {
-  const vec_float4 e = spu_rsqrte(v), half = spu_mul(v, spu_splats(0.5f));
-  return spu_madd(spu_nmsub(spu_mul(half, e), e, spu_splats(0.5f)), e, e);
+SC_SIMD_INLINE vec_float4 rsqrtf4(vec_float4 v_) {
+  const vec_float4 e_ = spu_rsqrte(v_), half = spu_mul(v_, spu_splats(0.5f));
+  return spu_madd(spu_nmsub(spu_mul(half, e_), e_, spu_splats(0.5f)), e_, e_);
 }
-SC_SIMD_INLINE vec_float4 divf4(vec_float4 a, vec_float4 b) {
-  const vec_float4 quotient = spu_mul(a, recipf4(b));
-  return spu_madd(spu_nmsub(quotient, b, a), recipf4(b), quotient);
+SC_SIMD_INLINE vec_float4 divf4(vec_float4 a_, vec_float4 b_) {
+  const vec_float4 quotient = spu_mul(a_, recipf4(b_));
+  return spu_madd(spu_nmsub(quotient, b_, a_), recipf4(b_), quotient);
 }
 
-#define SC_SIMD_BY_LANES_1(name)                                                                    \
-  SC_SIMD_INLINE vec_float4 name##4(vec_float4 v) {                                                 \
-    vec_float4 result = spu_splats(name(spu_extract(v, 0)));                                        \
-    int lane;                                                                                       \
-    for (lane = 1; lane < 4; ++lane) result = spu_insert(name(spu_extract(v, lane)), result, lane); \
-    return result;                                                                                  \
+#define SC_SIMD_BY_LANES_1(name)                                                                     \
+  SC_SIMD_INLINE vec_float4 name##4(vec_float4 v_) {                                                 \
+    vec_float4 result = spu_splats(name(spu_extract(v_, 0)));                                        \
+    int lane;                                                                                        \
+    for (lane = 1; lane < 4; ++lane) result = spu_insert(name(spu_extract(v_, lane)), result, lane); \
+    return result;                                                                                   \
   }
-#define SC_SIMD_BY_LANES_2(name)                                                           \
-  SC_SIMD_INLINE vec_float4 name##4(vec_float4 a, vec_float4 b) {                          \
-    vec_float4 result = spu_splats(name(spu_extract(a, 0), spu_extract(b, 0)));            \
-    int lane;                                                                              \
-    for (lane = 1; lane < 4; ++lane)                                                       \
-      result = spu_insert(name(spu_extract(a, lane), spu_extract(b, lane)), result, lane); \
-    return result;                                                                         \
+#define SC_SIMD_BY_LANES_2(name)                                                             \
+  SC_SIMD_INLINE vec_float4 name##4(vec_float4 a_, vec_float4 b_) {                          \
+    vec_float4 result = spu_splats(name(spu_extract(a_, 0), spu_extract(b_, 0)));            \
+    int lane;                                                                                \
+    for (lane = 1; lane < 4; ++lane)                                                         \
+      result = spu_insert(name(spu_extract(a_, lane), spu_extract(b_, lane)), result, lane); \
+    return result;                                                                           \
   }
 SC_SIMD_BY_LANES_1(sqrtf)
 SC_SIMD_BY_LANES_1(cbrtf)
@@ -91,28 +91,28 @@ SC_SIMD_BY_LANES_2(fdimf)
 #undef SC_SIMD_BY_LANES_1
 #undef SC_SIMD_BY_LANES_2
 
-SC_SIMD_INLINE vec_float4 fmaf4(vec_float4 a, vec_float4 b, vec_float4 c) { return spu_madd(a, b, c); }
-SC_SIMD_INLINE vec_float4 ldexpf4(vec_float4 v, vec_int4 exponents) {
-  vec_float4 result = v;
+SC_SIMD_INLINE vec_float4 fmaf4(vec_float4 a_, vec_float4 b_, vec_float4 c_) { return spu_madd(a_, b_, c_); }
+SC_SIMD_INLINE vec_float4 ldexpf4(vec_float4 v_, vec_int4 exponents) {
+  vec_float4 result = v_;
   int lane;
   for (lane = 0; lane < 4; ++lane)
-    result = spu_insert(ldexpf(spu_extract(v, lane), spu_extract(exponents, lane)), result, lane);
+    result = spu_insert(ldexpf(spu_extract(v_, lane), spu_extract(exponents, lane)), result, lane);
   return result;
 }
-SC_SIMD_INLINE void sincosf4(vec_float4 v, vec_float4* sine, vec_float4* cosine) {
-  *sine = sinf4(v);
-  *cosine = cosf4(v);
+SC_SIMD_INLINE void sincosf4(vec_float4 v_, vec_float4* sine, vec_float4* cosine) {
+  *sine = sinf4(v_);
+  *cosine = cosf4(v_);
 }
 
 /* Two doubles at once. */
-#define SC_SIMD_DOUBLES_1(name)                                                         \
-  SC_SIMD_INLINE vec_double2 name##d2(vec_double2 v) {                                  \
-    return spu_insert(name(spu_extract(v, 1)), spu_splats(name(spu_extract(v, 0))), 1); \
+#define SC_SIMD_DOUBLES_1(name)                                                           \
+  SC_SIMD_INLINE vec_double2 name##d2(vec_double2 v_) {                                   \
+    return spu_insert(name(spu_extract(v_, 1)), spu_splats(name(spu_extract(v_, 0))), 1); \
   }
-#define SC_SIMD_DOUBLES_2(name)                                                   \
-  SC_SIMD_INLINE vec_double2 name##d2(vec_double2 a, vec_double2 b) {             \
-    return spu_insert(name(spu_extract(a, 1), spu_extract(b, 1)),                 \
-                      spu_splats(name(spu_extract(a, 0), spu_extract(b, 0))), 1); \
+#define SC_SIMD_DOUBLES_2(name)                                                     \
+  SC_SIMD_INLINE vec_double2 name##d2(vec_double2 a_, vec_double2 b_) {             \
+    return spu_insert(name(spu_extract(a_, 1), spu_extract(b_, 1)),                 \
+                      spu_splats(name(spu_extract(a_, 0), spu_extract(b_, 0))), 1); \
   }
 SC_SIMD_DOUBLES_1(sqrt)
 SC_SIMD_DOUBLES_1(exp)
@@ -127,9 +127,9 @@ SC_SIMD_DOUBLES_2(pow)
 SC_SIMD_DOUBLES_2(fmod)
 #undef SC_SIMD_DOUBLES_1
 #undef SC_SIMD_DOUBLES_2
-SC_SIMD_INLINE vec_double2 divd2(vec_double2 a, vec_double2 b) {
-  return spu_insert(spu_extract(a, 1) / spu_extract(b, 1), spu_splats(spu_extract(a, 0) / spu_extract(b, 0)),
-                    1);
+SC_SIMD_INLINE vec_double2 divd2(vec_double2 a_, vec_double2 b_) {
+  return spu_insert(spu_extract(a_, 1) / spu_extract(b_, 1),
+                    spu_splats(spu_extract(a_, 0) / spu_extract(b_, 0)), 1);
 }
 
 /* The inline functions of simdmath/NAME.h have an underscore in front. */
