@@ -69,12 +69,12 @@ macro(softcell_install_component component)
     softcell_install_pkg_config(psl1ght "thread groups and raw SPUs as PSL1GHT has them"
       CFLAGS -fno-pie -I\${prefix}/${CMAKE_INSTALL_INCLUDEDIR}/softcell/psl1ght
       LIBS -no-pie -Wl,--no-as-needed -L\${prefix}/${CMAKE_INSTALL_LIBDIR}/softcell -lsoftcell_low_memory -lspe2
-        -Wl,-rpath,\${prefix}/${CMAKE_INSTALL_LIBDIR}/softcell)
+        -Wl,-rpath,\${prefix}/${CMAKE_INSTALL_LIBDIR}/softcell -Wl,-rpath,\${libdir})
     install(FILES ${PROJECT_SOURCE_DIR}/ppu/libspe2/include/libspe2.h ${PROJECT_SOURCE_DIR}/ppu/libspe2/include/libspe2-types.h
       ${PROJECT_SOURCE_DIR}/ppu/libspe2/include/cbea_map.h ${PROJECT_SOURCE_DIR}/ppu/libspe2/include/ppu_intrinsics.h
       ${PROJECT_SOURCE_DIR}/ppu/libspe2/include/libmisc.h ${PROJECT_SOURCE_DIR}/ppu/libspe2/include/malloc_align.h
       ${PROJECT_SOURCE_DIR}/ppu/libspe2/include/free_align.h TYPE INCLUDE COMPONENT development)
-    softcell_install_pkg_config(libspe2 "the SPE Runtime Management Library" LIBS -lspe2)
+    softcell_install_pkg_config(libspe2 "the SPE Runtime Management Library" LIBS -Wl,-rpath,\${libdir} -lspe2)
   elseif("${component}" STREQUAL "render")
     softcell_install_libraries(render glad render)
     softcell_install_pkg_config(render "pictures of meshes, without a window"

@@ -163,6 +163,8 @@ class ObjCheck {
 
 MeshFileContents check_obj(std::string_view bytes) {
   if (bytes.find('\0') != std::string_view::npos) refuse("it holds binary data; an OBJ file is text");
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+  if (bytes.starts_with(kByteOrderMark)) bytes.remove_prefix(kByteOrderMark.size());
   return ObjCheck(bytes).run();
 }
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -108,6 +109,17 @@ TEST(PictureCells, OfALargePictureComeFromASmallerOne) {
   EXPECT_EQ(kept.pixel(999, 499)[3], 255);
 }
 
+TEST(PictureCells, OfANarrowPictureThatIsMadeSmallerAreThere) {
+  for (const auto& [width, height] : {std::pair(4096, 1), std::pair(1500, 1), std::pair(2, 2047)}) {
+    render::Image narrow(width, height);
+    std::ranges::fill(narrow.rgba, std::uint8_t{255});
+    const render::Image kept = kept_picture(narrow);
+    EXPECT_LE(std::max(kept.width, kept.height), 1024);
+    for (std::size_t i = 3; i < kept.rgba.size(); i += 4)
+      ASSERT_EQ(kept.rgba[i], 255) << width << " " << i / 4;
+  }
+}
+
 TEST(Sticker, HasAWhiteBorderAroundTheSilhouette) {
   const Sticker sticker = make_sticker(picture_of({"....", ".#..", "...."}), 0.5f);
   const int scale = sticker.scale, border = sticker.border;
@@ -177,7 +189,7 @@ TEST_F(PictureScenes, RefuseBadPicturesInOneSentence) {
   std::filesystem::create_symlink("/etc/hostname", folder_ / "link.png");
   EXPECT_NE(error_of_scene("image = 'link.png'").find("is outside"), std::string::npos);
   EXPECT_NE(
-      error_of_scene("image = 'cat.png'\nrows = ['#']").find("needs one of rows, shape, lattice and image"),
+      error_of_scene("image = 'cat.png'\nrows = ['#']").find("has several of rows, shape, lattice and image"),
       std::string::npos);
   EXPECT_NE(error_of_scene("rows = ['#']\ncell_size = 1\nlongest_side = 2").find("which is of an image"),
             std::string::npos);

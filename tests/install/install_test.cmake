@@ -89,6 +89,11 @@ file(WRITE ${SCRATCH}/spu.cpp "#include \"softcell/jobs/job_system.h\"\n#include
 pkg_config_builds(spu_by_hand ${SCRATCH}/spu.cpp softcell-spu softcell-spe-bodies)
 says(0 "" ${SCRATCH}/spu_by_hand)
 
+# The library is found where it was installed.
+file(WRITE ${SCRATCH}/spes.cpp "#include <libspe2.h>\nint main() { return spe_cpu_info_get(SPE_COUNT_USABLE_SPES, -1) > 0 ? 0 : 1; }\n")
+pkg_config_builds(spes_by_hand ${SCRATCH}/spes.cpp softcell-libspe2)
+says(0 "" ${SCRATCH}/spes_by_hand)
+
 # A Makefile's project and the programs of the tests with the installed commands of an SPU toolchain.
 set(lab ${SCRATCH}/lab)
 file(COPY ${EXAMPLES}/../tests/toolchain/lab DESTINATION ${SCRATCH})

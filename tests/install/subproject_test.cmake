@@ -29,6 +29,12 @@ expect("a project without the assembler" 1
   "softcell_embed_spu_images\\(somebody\\): images are embedded by the assembler; enable it, as in project\\(\\.\\.\\. LANGUAGES CXX ASM\\)\\."
   ${configure} -DSOFTCELL_COMPONENTS=spu -DCMAKE_DISABLE_FIND_PACKAGE_box2d=OFF)
 
+foreach(stack 0 abc 300000)
+  expect("a stack of ${stack} bytes" 1 "softcell_add_spu_kernel\\(sloppy\\): STACK_BYTES is ${stack}; a whole number from 1 to 262144 was expected"
+    ${CMAKE_COMMAND} -S ${project} -B ${SCRATCH}/stack -G ${GENERATOR} -DSOFTCELL=${SOURCE} -DCMAKE_CXX_COMPILER=${COMPILER}
+    -DSOFTCELL_COMPONENTS=spu -DWITH_ASSEMBLER=ON -DSTACK_BYTES=${stack})
+endforeach()
+
 # All libraries, and nothing else: no tests but the project's own, no programs but the project's own, and warnings stop nobody.
 expect("configuring all components" 0 "" ${configure} -DWITH_ASSEMBLER=ON
   "-DSOFTCELL_COMPONENTS=spu\;libspe2\;soft_bodies\;mesh_import\;bullet\;box2d\;spe_bodies")

@@ -281,9 +281,10 @@ TEST_F(MeshImport, ReadsObjWithRelativeIndicesPolygonsColoursAndContinuedLines) 
 }
 
 TEST_F(MeshImport, ReadsObjWithCommentsBehindStatementsAndNumbersThatBeginOrEndWithAPoint) {
-  const TriangleMesh mesh = import("odd.obj",
-                                   "v -.5 0 0 # left\nv .5 0. 0 #right\nv +.5 1. -0.25\nv -.5e1 .25 1.e0\n"
-                                   "vt .5 .25 # a comment\nf 1/1 2/1 3/1 # 4/1\nf 1/1 3/1 4/1\n");
+  const TriangleMesh mesh =
+      import("odd.obj",
+             "\xEF\xBB\xBFv -.5 0 0 # left\nv .5 0. 0 #right\nv +.5 1. -0.25\nv -.5e1 .25 1.e0\n"
+             "vt .5 .25 # a comment\nf 1/1 2/1 3/1 # 4/1\nf 1/1 3/1 4/1\n");
   EXPECT_EQ(mesh.triangles.size(), 2u);
   EXPECT_EQ(bounds(mesh).low, Eigen::Vector3f(-5, 0, -0.25f));
   EXPECT_EQ(bounds(mesh).high, Eigen::Vector3f(0.5f, 1, 1));

@@ -133,6 +133,15 @@ TEST(BashCompletion, KeepsNamesWithSpacesWhole) {
   EXPECT_EQ(sorted("report my"), "<my folder><my kernel.elf>");
   EXPECT_EQ(sorted("spu run my"), "<my folder><my kernel.elf>");
   EXPECT_EQ(sorted("spu run --in x = m"), "<my folder><my kernel.elf>");
+  EXPECT_EQ(sorted("run my"), "<my folder><my kernel.elf>");
+  EXPECT_EQ(sorted("run --checked -- my"), "<my folder><my kernel.elf>");
+}
+
+TEST(BashCompletion, OfHelpKnowsTheVerbs) {
+  const ScratchFolder folder;
+  EXPECT_EQ(offered(folder, kCommandsScript, "softcell help de"), "demo ");
+  EXPECT_EQ(offered(folder, kCommandsScript, "softcell help spu di"), "disasm ");
+  EXPECT_EQ(offered(folder, kCommandsScript, "softcell hel"), "help ");
 }
 
 TEST(BashCompletion, OfTheCommandKnowsItsKernels) {
@@ -180,6 +189,8 @@ TEST(FishCompletion, OfTheCommandKnowsScenesKernelsAndFiles) {
   EXPECT_EQ(completed_by_fish("softcell report ma"), "matches.txt ");
   EXPECT_EQ(completed_by_fish("softcell demo 3d --out m"), "my folder/ ");
   EXPECT_EQ(completed_by_fish("softcell completion "), "bash fish zsh ");
+  EXPECT_EQ(completed_by_fish("softcell run ma"), "matches.txt ");
+  EXPECT_EQ(completed_by_fish("softcell help spu di"), "disasm ");
 }
 
 TEST(ZshCompletion, OffersWhatBashDoes) {

@@ -414,12 +414,14 @@ TEST(Command, ComparesWithAnEarlierRunAndMarksWhatGotSlower) {
     EXPECT_EQ(entry.contains("times_old"), entry["name"] != "dma/memcpy16k") << entry;
 
   EXPECT_EQ(run_softcell(bench + (folder / "new.json") + " --json " + (folder / "new.json")).status, 2);
-  write_file(folder / "old.json", "{\"name\": 3}");
-  const CommandResult refused = run_softcell(bench + (folder / "old.json"));
-  EXPECT_EQ(refused.status, 1);
-  EXPECT_NE(refused.output.find("old.json holds no figures of `softcell bench --json`"), std::string::npos)
-      << refused.output;
-  EXPECT_EQ(refused.output.find("json.exception"), std::string::npos) << refused.output;
+  for (const char* text : {"{\"name\": 3}", "{}", "[]", "[3]", "null"}) {
+    write_file(folder / "old.json", text);
+    const CommandResult refused = run_softcell(bench + (folder / "old.json"));
+    EXPECT_EQ(refused.status, 1);
+    EXPECT_NE(refused.output.find("old.json holds no figures of `softcell bench --json`"), std::string::npos)
+        << refused.output;
+    EXPECT_EQ(refused.output.find("json.exception"), std::string::npos) << refused.output;
+  }
 }
 
 /// A row of docs/notes/ps3.md by its cells.

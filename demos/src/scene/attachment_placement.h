@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <optional>
+#include <string>
 #include <string_view>
 
 #include "softcell/render/frame.h"
@@ -17,6 +18,7 @@ template <int kDimension>
 struct AttachmentPlacement {
   using Vector = Eigen::Vector<float, kDimension>;
 
+  std::string described;             ///< where, for messages: "arena.toml:12:1: attach 2"
   std::size_t body = 0;              ///< number of the soft body
   std::optional<std::size_t> other;  ///< of another one
   std::optional<std::size_t> box;    ///< or of one of Scene::boxes, in three dimensions

@@ -28,6 +28,7 @@ namespace softcell::demos {
 
 struct SoftBodyPlacement {
   std::string name;
+  std::string described;  ///< where, for messages: "arena.toml:12:1: soft body 3"
   ppu::TriangleMesh mesh;
   ppu::SoftBodySettings settings;
   Eigen::Vector3f position{0, 0, 0};  ///< where the mesh's own origin goes

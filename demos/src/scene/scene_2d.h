@@ -50,6 +50,7 @@ struct Picture2d {
 
 struct SoftBody2dPlacement {
   std::string name;
+  std::string described;               ///< where, for messages: "man.toml:12:1: soft body 3"
   std::vector<Eigen::Vector2i> cells;  ///< grid indices of the lattice's cells, of any origin
   ppu::SoftBodySettings settings;      ///< density is in kg/m^2
   Eigen::Vector2f position{0, 0};      ///< of the middle of the cells' box

@@ -74,7 +74,7 @@ class Hash {
     add_unless(least_cells, ppu::Fracture{}.least_cells);
   }
   void add(const SoftBodyPlacement& body) {
-    const auto& [name, mesh, settings, position, twist, colour, own_materials, strengths] = body;
+    const auto& [name, described, mesh, settings, position, twist, colour, own_materials, strengths] = body;
     add(mesh, settings, position);
     add_unless(twist, 0.0f);
     add_strengths(strengths);
@@ -116,8 +116,8 @@ class Hash {
   }
   template <int kDimension>
   void add(const AttachmentPlacement<kDimension>& attachment) {
-    const auto& [body, other, box, rigid, at, radius, other_at, other_radius, settings, thickness, colour] =
-        attachment;
+    const auto& [described, body, other, box, rigid, at, radius, other_at, other_radius, settings, thickness,
+                 colour] = attachment;
     const auto& [kind, point, axis, length, compliance, break_force, touch] = settings;
     add(body, other, box, at, radius, other_at, other_radius);
     add(static_cast<int>(kind), point, axis, length, compliance, break_force, touch);
@@ -128,8 +128,8 @@ class Hash {
     add(amplitude_x, amplitude_z, period_x, period_z, begin);
   }
   void add(const SoftBody2dPlacement& body) {
-    const auto& [name, cells, settings, position, contact_radius, colour, coloured_cells, face, ring, picture,
-                 strengths] = body;
+    const auto& [name, described, cells, settings, position, contact_radius, colour, coloured_cells, face,
+                 ring, picture, strengths] = body;
     add(cells, settings, position, contact_radius);
     add_strengths(strengths);
   }

@@ -99,6 +99,10 @@ std::optional<OwnModel> load_own_model(const OwnModelOptions& options) {
   if (options.z_up) ppu::turn_z_up(model.mesh);
   const ppu::Bounds<3> box = ppu::bounds(model.mesh);
   const double longest = (box.high - box.low).maxCoeff();
+  constexpr double kLeastSide = 1e-30;  // whose inverse a float holds
+  if (!(longest >= kLeastSide))
+    throw std::runtime_error(fmt::format("{}: its longest side is {:.3g}; {} or more was expected",
+                                         options.mesh->string(), longest, kLeastSide));
   const double cell = cell_size(options, longest);
   ppu::fit(model.mesh, static_cast<float>(longest));  // centred, its size unchanged
   check_lattice(options, model.mesh, longest, cell);

@@ -76,17 +76,19 @@ render::Image made_smaller(const render::Image& image, int factor) {
   for (int y = 0; y < smaller.height; ++y) {
     for (int x = 0; x < smaller.width; ++x) {
       std::array<std::uint32_t, 4> sums{};
+      std::uint32_t pixels = 0;  // fewer at the picture's upper and right border
       for (int j = y * factor; j < std::min((y + 1) * factor, image.height); ++j) {
         for (int i = x * factor; i < std::min((x + 1) * factor, image.width); ++i) {
           const std::uint8_t* const pixel = image.pixel(i, j);
           for (std::size_t c = 0; c < 3; ++c) sums[c] += std::uint32_t{pixel[3]} * pixel[c];
           sums[3] += pixel[3];
+          ++pixels;
         }
       }
       std::uint8_t* const to = smaller.pixel(x, y);
       for (std::size_t c = 0; c < 3 && sums[3] > 0; ++c)
         to[c] = static_cast<std::uint8_t>((sums[c] + sums[3] / 2) / sums[3]);
-      to[3] = static_cast<std::uint8_t>(sums[3] / static_cast<std::uint32_t>(factor * factor));
+      to[3] = static_cast<std::uint8_t>(sums[3] / pixels);
     }
   }
   return smaller;

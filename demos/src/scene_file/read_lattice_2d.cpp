@@ -188,7 +188,9 @@ void read_lattice_2d(FieldReader& fields, LatticeFiles& files, const OwnPictureP
   const int given = (rows.empty() ? 0 : 1) + (shape != nullptr ? 1 : 0) + (fields.has("lattice") ? 1 : 0) +
                     (fields.has("image") ? 1 : 0);
   if (given != 1)
-    throw SceneError(fields.place(), fields.what() + " needs one of rows, shape, lattice and image");
+    throw SceneError(fields.place(), fields.what() + (given == 0 ? " needs one of" : " has several of") +
+                                         " rows, shape, lattice and image" +
+                                         (given == 0 ? "" : "; it may have one of them"));
   if (longest_side && !fields.has("image"))
     throw SceneError(fields.place("longest_side"), fields.what() + " has longest_side, which is of an image");
   const auto from_picture = [&](std::shared_ptr<const render::Image> picture, float side, double cells,
@@ -199,6 +201,8 @@ void read_lattice_2d(FieldReader& fields, LatticeFiles& files, const OwnPictureP
       body.picture = std::make_shared<const Picture2d>(std::move(made.picture));
       body.settings.cell_size = static_cast<float>(side / cells);
     } catch (const std::runtime_error& error) {
+      if (own.picture != nullptr)
+        throw std::runtime_error(fmt::format("{}: {}", own.picture->file.string(), error.what()));
       throw SceneError(place, fmt::format("{}: {}", fields.what(), error.what()));
     }
   };

@@ -153,7 +153,9 @@ ppu::TriangleMesh read_mesh(FieldReader& body, MeshFiles& files) {
       .number("longest_side", longest_side, kLength)
       .finish();
   if ((shape != nullptr) == body.has("mesh")) {
-    throw SceneError(body.place(), body.what() + " needs either a shape or a mesh");
+    throw SceneError(body.place(),
+                     body.what() + (shape == nullptr ? " needs a shape or a mesh"
+                                                     : " has a shape and a mesh; it may have one of them"));
   }
   for (const char* const field : {"up", "scale"}) {
     if (shape != nullptr && body.has(field))

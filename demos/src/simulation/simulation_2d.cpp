@@ -22,6 +22,7 @@
 #include "beginning_of.h"
 #include "changed_material.h"
 #include "cut_bodies.h"
+#include "describe_refusal.h"
 #include "followed_particle.h"
 #include "held_bodies.h"
 #include "input/controls.h"
@@ -119,7 +120,8 @@ struct World {
           std::ranges::find(models, models[i]) - models.begin() == static_cast<std::ptrdiff_t>(i);
       std::optional<ppu::Skin2d> skin;
       if (is_first && contacts == ppu::ContactMethod::kSurface) skin = body.skin(models[i]->lattice());
-      soft_bodies.add(models[i], body.position, skin ? &*skin : nullptr);
+      describe_refusal(body.described,
+                       [&] { soft_bodies.add(models[i], body.position, skin ? &*skin : nullptr); });
     }
     attach(scene);
     if (scene.begin) begin(scene);
@@ -137,7 +139,7 @@ struct World {
     for (const AttachmentPlacement<2>& placement : scene.attachments) {
       const ppu::SoftBody<2>& body = soft_bodies[placement.body];
       const auto patch = ppu::Patch<2>::of_surface(placement.at, placement.radius);
-      try {
+      describe_refusal(placement.described, [&] {
         if (placement.other)
           attachments.push_back(soft_bodies.attach(
               body, patch, soft_bodies[*placement.other],
@@ -147,10 +149,7 @@ struct World {
               soft_bodies.attach(body, patch, *rigid_bodies[*placement.rigid], placement.settings));
         else
           attachments.push_back(soft_bodies.attach(body, patch, placement.settings));
-      } catch (const std::invalid_argument& error) {
-        throw std::runtime_error("attach " + std::to_string(attachments.size() + 1) + " of scene " +
-                                 scene.name + ": " + error.what());
-      }
+      });
     }
   }
 
@@ -215,11 +214,14 @@ Models models_of(const std::vector<SoftBody2dPlacement>& bodies) {
       },
       [&](std::size_t i) {
         const std::vector<StrengthSlab<2>>& strengths = bodies[i].strengths;
-        if (strengths.empty())
-          return ppu::make_soft_body_model(bodies[i].lattice(), bodies[i].settings, bodies[i].contact_radius);
-        return ppu::make_soft_body_model(
-            bodies[i].lattice(), bodies[i].settings, bodies[i].contact_radius,
-            [&strengths](const Vector2f& at) { return strength_at<2>(strengths, at); });
+        return describe_refusal(bodies[i].described, [&] {
+          if (strengths.empty())
+            return ppu::make_soft_body_model(bodies[i].lattice(), bodies[i].settings,
+                                             bodies[i].contact_radius);
+          return ppu::make_soft_body_model(
+              bodies[i].lattice(), bodies[i].settings, bodies[i].contact_radius,
+              [&strengths](const Vector2f& at) { return strength_at<2>(strengths, at); });
+        });
       });
 }
 

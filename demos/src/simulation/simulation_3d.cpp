@@ -15,6 +15,7 @@
 #include "beginning_of.h"
 #include "changed_material.h"
 #include "cut_bodies.h"
+#include "describe_refusal.h"
 #include "held_bodies.h"
 #include "input/controls.h"
 #include "input/script_player.h"
@@ -100,10 +101,12 @@ std::vector<std::shared_ptr<const ppu::SoftBodyModel<3>>> models_of(
       },
       [&](std::size_t i) {
         const std::vector<StrengthSlab<3>>& strengths = bodies[i].strengths;
-        if (strengths.empty()) return ppu::make_soft_body_model(bodies[i].mesh, bodies[i].settings);
-        return ppu::make_soft_body_model(
-            bodies[i].mesh, bodies[i].settings,
-            [&strengths](const Eigen::Vector3f& at) { return strength_at(strengths, at); });
+        return describe_refusal(bodies[i].described, [&] {
+          if (strengths.empty()) return ppu::make_soft_body_model(bodies[i].mesh, bodies[i].settings);
+          return ppu::make_soft_body_model(
+              bodies[i].mesh, bodies[i].settings,
+              [&strengths](const Eigen::Vector3f& at) { return strength_at(strengths, at); });
+        });
       });
 }
 
@@ -160,8 +163,8 @@ struct Simulation3d::State {
     whole = models_of(scene.soft_bodies);
     for (std::size_t i = 0; i < whole.size(); ++i) {
       const SoftBodyPlacement& placement = scene.soft_bodies[i];
-      ppu::SoftBody<3>& body = soft_bodies.add(whole[i], placement.position);
-      twist(body, placement.twist);
+      describe_refusal(placement.described,
+                       [&] { twist(soft_bodies.add(whole[i], placement.position), placement.twist); });
       sources.push_back(i);
     }
     attach();
@@ -245,7 +248,7 @@ struct Simulation3d::State {
     for (const AttachmentPlacement<3>& placement : scene.attachments) {
       const ppu::SoftBody<3>& body = soft_bodies[placement.body];
       const auto patch = ppu::Patch<3>::of_surface(placement.at, placement.radius);
-      try {
+      describe_refusal(placement.described, [&] {
         if (placement.other)
           attachments.push_back(soft_bodies.attach(
               body, patch, soft_bodies[*placement.other],
@@ -255,10 +258,7 @@ struct Simulation3d::State {
               soft_bodies.attach(body, patch, world.rigid_body(boxes[*rigid]), placement.settings));
         else
           attachments.push_back(soft_bodies.attach(body, patch, placement.settings));
-      } catch (const std::invalid_argument& error) {
-        throw std::runtime_error("attach " + std::to_string(attachments.size() + 1) + " of scene " +
-                                 scene.name + ": " + error.what());
-      }
+      });
     }
   }
 

@@ -238,6 +238,7 @@ void NativeEngine::prepare(const EntryArguments& arguments) {
     }
   }
   context_.interrupted = 0;
+  context_.landing = 0;
   context_.stepping = 0;
   context_.trap = {};
 }
@@ -616,9 +617,12 @@ dma::Fault NativeEngine::cause_of_trap() const {
     return fault(dma::Rule::kOutsideLocalStore,
                  where + access + std::to_string(arena() - trap.address) + " bytes before the local store");
   }
-  return fault(dma::Rule::kOutsideLocalStore,
-               where + access + "address " + hexadecimal(trap.address) +
-                   ", which is neither in the local store nor an effective address");
+  return fault(
+      dma::Rule::kOutsideLocalStore,
+      where + access + "address " + hexadecimal(trap.address) +
+          (trap.address < dma::kLocalStoreBytes
+               ? ", which is no pointer in a kernel built for the host: its local store lies elsewhere"
+               : ", which is neither in the local store nor an effective address"));
 }
 
 std::uint32_t NativeEngine::stack_high_water() const {

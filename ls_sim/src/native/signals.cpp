@@ -1,10 +1,12 @@
 #include "signals.h"
 
 #include <ucontext.h>
+#include <unistd.h>
 
 #include <array>
 #include <cstdint>
 #include <mutex>
+#include <string_view>
 
 #include "kernel_context.h"
 #include "serialise.h"
@@ -37,11 +39,19 @@ void pass_on(int signal, siginfo_t* info, void* machine) {
   }
 }
 
+/// A kernel that is executed from the middle of an instruction can destroy what its thread needs to come back from it.
+void say_that_no_return_is_possible() {
+  constexpr std::string_view kSentence =
+      "softcell: a kernel has destroyed the stack of the host's thread that runs it; this process ends\n";
+  [[maybe_unused]] const auto written = write(STDERR_FILENO, kSentence.data(), kSentence.size());
+}
+
 constexpr greg_t kDirectionFlag = 0x400, kTrapFlag = 0x100;
 
 /// Leaves the kernel where it is: when the handler returns, the thread continues in land() on the landing
 /// stack.
-void redirect_to_landing(const KernelContext& context, mcontext_t& machine) {
+void redirect_to_landing(KernelContext& context, mcontext_t& machine) {
+  context.landing = 1;
   machine.gregs[REG_RIP] = reinterpret_cast<greg_t>(&land);
   // As if called: 8 below a multiple of 16.
   machine.gregs[REG_RSP] = static_cast<greg_t>(context.landing_stack_top - 8);
@@ -100,6 +110,10 @@ void handle(int signal, siginfo_t* info, void* machine_context) {
     if (context == nullptr) return;
     context->interrupted = 1;
   } else if (context == nullptr || context->in_kernel == 0) {
+    pass_on(signal, info, machine_context);
+    return;
+  } else if (context->landing != 0) {
+    say_that_no_return_is_possible();
     pass_on(signal, info, machine_context);
     return;
   }

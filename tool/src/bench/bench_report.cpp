@@ -83,7 +83,9 @@ OldFigures read_old_figures(const std::filesystem::path& file) {
   const auto* const text = reinterpret_cast<const char*>(bytes.data());
   OldFigures figures;
   try {
-    for (const auto& entry : nlohmann::json::parse(text, text + bytes.size())) {
+    const auto document = nlohmann::json::parse(text, text + bytes.size());
+    if (!document.is_array() || document.empty()) throw std::runtime_error("it is no list of benchmarks");
+    for (const auto& entry : document) {
       const double least = entry.at("ns_min").get<double>();
       if (!(least > 0)) throw std::runtime_error("a time is not above 0");
       figures[entry.at("name").get<std::string>()] = least;

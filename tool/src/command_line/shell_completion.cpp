@@ -20,6 +20,11 @@ std::string offer_words(const std::string& words) {
   return fmt::format("COMPREPLY=($(compgen -W '{}' -- \"$word\"))", words);
 }
 
+/// The name of a file, which nothing else that is known of the value says.
+bool is_file(const CommandOption& option) {
+  return option.value == "PROGRAM" || option.value.find("FILE") != std::string::npos;
+}
+
 /// How bash finds the words for a value.
 std::string value_action(const CommandOption& option) {
   const auto choices = choices_of(option);
@@ -27,7 +32,7 @@ std::string value_action(const CommandOption& option) {
   if (option.value == "DIR") return "_softcell_files -d \"$word\"";
   if (option.value == "SCENE") return "_softcell_scenes \"$word\" \"${verbs##* }\"";
   if (option.value == "KERNEL") return "_softcell_kernels \"$word\"";
-  if (option.value.find("FILE") != std::string::npos) return "_softcell_files -f \"$word\"";
+  if (is_file(option)) return "_softcell_files -f \"$word\"";
   return "COMPREPLY=()";
 }
 
@@ -96,6 +101,7 @@ _softcell() {{
   local word="${{COMP_WORDS[COMP_CWORD]}}" before="${{COMP_WORDS[COMP_CWORD-1]}}" verbs='' longer i
   COMPREPLY=()
   for ((i = 1; i < COMP_CWORD; ++i)); do
+    if [[ -z $verbs && ${{COMP_WORDS[i]}} == help ]]; then continue; fi  # of the verbs behind it
     longer="${{verbs:+$verbs }}${{COMP_WORDS[i]}}"
     case "$longer" in
       {}) verbs="$longer" ;;
@@ -130,7 +136,7 @@ std::string fish_values(const CommandOption& option) {
   if (option.value == "DIR") return " -f -a '(__fish_complete_directories)'";
   if (option.value == "SCENE") return " -F -a '(__softcell_scenes)'";
   if (option.value == "KERNEL") return " -F -a '(__softcell_kernels)'";
-  if (option.value.find("FILE") != std::string::npos) return " -F";
+  if (is_file(option)) return " -F";
   return " -f";
 }
 
@@ -160,6 +166,7 @@ constexpr const char* kFishScript =
 function __softcell_at
     set -l path ''
     for word in (commandline -opc)[2..]
+        test -z "$path" -a "$word" = help; and continue  # of the verbs behind it
         set -l longer (string trim -- "$path $word")
         contains -- $longer {}; or break
         set path $longer

@@ -102,6 +102,9 @@ std::optional<std::string> ProgramRun::difference(const ProgramRun& other) const
 }
 
 std::string ProgramRun::summary() const {
+  constexpr int kNotStarted = 127;  // what the loader and shells end with
+  if (report.is_null() && end.status == kNotStarted)
+    return "the program or one of its libraries was not found, as its last line says";
   if (report.is_null()) return "no SPE context was made with softcell's libspe2";
   std::string text = fmt::format(
       "{}, {}, {} ({:.1f} MB), {}", base::counted(report.at("contexts"), "SPE context"),
