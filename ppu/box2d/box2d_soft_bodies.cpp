@@ -18,6 +18,7 @@
 #include "ppu/box2d/box2d_body.h"
 #include "ppu/box2d/box2d_filter.h"
 #include "ppu/box2d/circle_body.h"
+#include "ppu/box2d/one_of_its_world.h"
 #include "ppu/box2d/parting_pieces.h"
 #include "ppu/box2d/rest.h"
 #include "ppu/box2d/surface_contacts_2d.h"
@@ -31,7 +32,8 @@ struct Box2dSoftBodies::Impl {
   /// @param solver  a SoftBodySolver<2>, or the pointer that owns one
   template <typename Solver>
   Impl(b2World& w, Solver&& solver, ContactMethod contacts, std::shared_ptr<ContactWorker> worker)
-      : world(w),
+      : one_of_its_world(w),
+        world(w),
         rest(w, [this](const b2Body& body) { return soft_body_of(body); }),
         filter(w,
                [this](const b2Fixture& a, const b2Fixture& b) {
@@ -269,6 +271,7 @@ struct Box2dSoftBodies::Impl {
     std::size_t number;
   };
 
+  OneOfItsWorld one_of_its_world;
   b2World& world;
   std::vector<std::unique_ptr<Box2dBody>> bodies;
   std::unordered_map<const b2Body*, OneParticle> particles;

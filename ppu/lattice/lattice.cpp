@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <cstdlib>
 #include <stdexcept>
 #include <string>
 
@@ -34,12 +36,20 @@ Index corner_of(const Index& cell, unsigned k) {
   return corner;
 }
 
+// Beyond, a float does not tell corners of a cell apart well.
+constexpr int kMostGridIndex = 1'000'000;
+
 template <class Index>
 void check_extent(const std::vector<Index>& cells) {
   SC_ASSERT(!cells.empty(), "{} cells have no extent", cells.size());
   for (int d = 0; d < Index::SizeAtCompileTime; ++d) {
     const auto [low, high] = std::minmax_element(cells.begin(), cells.end(),
                                                  [d](const Index& a, const Index& b) { return a[d] < b[d]; });
+    for (const int index : {(*low)[d], (*high)[d]})
+      if (std::abs(std::int64_t{index}) > kMostGridIndex)
+        throw std::runtime_error("a lattice's cells have grid indices of up to " +
+                                 std::to_string(kMostGridIndex) + " on both sides of 0; one is " +
+                                 std::to_string(index) + " along " + "xyz"[d]);
     const std::int64_t extent = std::int64_t{(*high)[d]} - (*low)[d] + 1;
     if (extent > kMaxLatticeCellsPerAxis)
       throw std::runtime_error("a lattice may be at most " + std::to_string(kMaxLatticeCellsPerAxis) +

@@ -67,6 +67,14 @@ void scale(TriangleMesh& mesh, float factor) {
 void validate(const TriangleMesh& mesh) {
   const std::size_t positions = mesh.positions.size();
   require_one_for_each("normals", mesh.normals.size(), positions);
+  for (std::size_t i = 0; i < mesh.normals.size(); ++i) {
+    const Eigen::Vector3f& normal = mesh.normals[i];
+    constexpr float kLeast = 1e-20f;  // of a square, whose root and inverse are numbers
+    if (normal.squaredNorm() >= kLeast && std::isfinite(normal.squaredNorm())) continue;
+    throw std::invalid_argument("normal " + std::to_string(i) + " of a mesh is " +
+                                std::to_string(normal.x()) + ", " + std::to_string(normal.y()) + ", " +
+                                std::to_string(normal.z()) + "; a unit vector was expected");
+  }
   if (!mesh.texture_coordinates.empty())
     require_one_for_each("texture coordinates", mesh.texture_coordinates.size(), positions);
   if (!mesh.colours.empty()) require_one_for_each("colours", mesh.colours.size(), positions);

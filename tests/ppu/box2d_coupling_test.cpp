@@ -69,6 +69,15 @@ TEST(Box2dCouplingOfCircles, TheCentreOfMassOfAParticleIsItsPosition) {
   }
 }
 
+TEST(Box2dSoftBodies, AWorldHasOneObjectOfThem) {
+  b2World world({0, -9.81f}), other({0, -9.81f});
+  auto bodies = std::make_unique<Box2dSoftBodies>(world);
+  EXPECT_THROW(Box2dSoftBodies{world}, std::invalid_argument);
+  EXPECT_NO_THROW(Box2dSoftBodies{other});
+  bodies.reset();
+  EXPECT_NO_THROW(Box2dSoftBodies{world});
+}
+
 TEST_P(Box2dCoupling, FallsAsEverythingFalls) {
   World2d world(9.81f, GetParam());
   SoftBody<2>& body = world.soft.add(rectangle_model({3, 3}, rubber()), {0, 10});

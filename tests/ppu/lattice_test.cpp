@@ -126,6 +126,11 @@ TEST(LatticeFromCells, TakesNegativeIndicesAndRefusesWhatPassesTheLimits) {
   constexpr int kFar = std::numeric_limits<int>::max() - 1;
   EXPECT_THROW(lattice_from_cells(std::vector<Vector3i>{{-kFar, 0, 0}, {kFar, 0, 0}}, 1, {0, 0, 0}),
                std::runtime_error);
+  for (const int index :
+       {1'000'001, -1'000'001, std::numeric_limits<int>::max(), std::numeric_limits<int>::min()})
+    EXPECT_THROW(lattice_from_cells(std::vector<Vector3i>{{0, index, 0}}, 1, {0, 0, 0}), std::runtime_error)
+        << index;
+  EXPECT_NO_THROW(lattice_from_cells(std::vector<Vector3i>{{1'000'000, 0, -1'000'000}}, 1, {0, 0, 0}));
   EXPECT_NO_THROW(lattice_from_cells(test::block_cells(255, 63, 63), 1, {0, 0, 0}));  // 2^20 particles
   EXPECT_THROW(lattice_from_cells(test::block_cells(255, 64, 63), 1, {0, 0, 0}), std::runtime_error);
   EXPECT_THROW(lattice_from_cells(std::vector<Vector3i>{}, 1, {0, 0, 0}), std::runtime_error);

@@ -189,6 +189,12 @@ TEST(MeshAttributes, ArraysThatDoNotFitEachOtherAreNamed) {
   TriangleMesh mesh = good;
   mesh.normals.pop_back();
   EXPECT_EQ(problem(mesh), "a mesh of 24 positions has 23 normals; one for each position was expected");
+  for (const Eigen::Vector3f& bad :
+       {Eigen::Vector3f(0, 0, 0), Eigen::Vector3f(0, NAN, 1), Eigen::Vector3f(INFINITY, 0, 0)}) {
+    mesh = good;
+    mesh.normals[5] = bad;
+    EXPECT_EQ(problem(mesh).find("normal 5 of a mesh is "), 0u) << problem(mesh);
+  }
   mesh = good;
   mesh.texture_coordinates.resize(1);
   EXPECT_EQ(problem(mesh),

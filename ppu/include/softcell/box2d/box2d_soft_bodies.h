@@ -59,7 +59,8 @@ struct SoftRayHit2d {
   SurfaceHit<2> hit;
 };
 
-/// All soft bodies of one world. A world can have only one object of this class. Used by the thread that steps the world.
+/// All soft bodies of one world. A world can have only one object of this class: the constructor of a second one throws
+/// std::invalid_argument. Used by the thread that steps the world.
 /// Box2D has no callback before a step, so step() replaces b2World::Step(). With ContactMethod::kSpheres each body uses a negative
 /// collision group, from -1 downwards: a fixture of the caller in that group never collides with the body. If a particle is NaN or
 /// infinite, begin_step() throws std::runtime_error.

@@ -80,8 +80,8 @@ std::size_t count_particles(const TriangleMesh& mesh, float cell_size);
 /// A lattice from cells given by their grid indices (any order, repeats ignored), all with fill 1.
 /// @param spacing  edge of a cell, metres
 /// @param origin   position of grid index 0, metres
-/// @throws std::runtime_error  no cells; spacing not positive and finite; more than kMaxLatticeParticles
-///         particles or kMaxLatticeCellsPerAxis cells along an axis.
+/// @throws std::runtime_error  no cells; a grid index above 1,000,000 or below -1,000,000; spacing not positive and finite; more
+///         than kMaxLatticeParticles particles or kMaxLatticeCellsPerAxis cells along an axis.
 Lattice<3> lattice_from_cells(std::span<const Eigen::Vector3i> cells, float spacing,
                               const Eigen::Vector3f& origin = Eigen::Vector3f::Zero());
 Lattice<2> lattice_from_cells(std::span<const Eigen::Vector2i> cells, float spacing,

@@ -63,7 +63,7 @@ void scale(TriangleMesh& mesh, float factor);
 
 /// Checks that the mesh's arrays fit each other.
 /// @throws std::invalid_argument  the number of normals or of an attribute is not that of positions, an index is out of
-/// range, or parts leave triangles out or name a material that does not exist; the sentence says which.
+/// range, a normal has no length or is not finite, or parts leave triangles out or name a material that does not exist; the sentence says which.
 void validate(const TriangleMesh& mesh);
 
 }  // namespace softcell::ppu
