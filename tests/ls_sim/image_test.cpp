@@ -159,15 +159,15 @@ TEST(LoadImage, RefusesAnotherMachine) {
 }
 
 TEST(LoadImage, NamesTheMachineOfWhatItRefuses) {
-  const struct {
+  const struct Case {
     unsigned machine;
     const char* name;
   } cases[] = {{EM_PPC64, "ELF machine 21 (a PowerPC"},
                {EM_SPU << 8, "ELF machine 5888 (that of a real SPU with its bytes swapped"}};
-  for (const auto& [machine, name] : cases) {
+  for (const Case& other : cases) {
     Bytes file = good_elf();
-    change<Elf32_Ehdr>(file, 0, [&](Elf32_Ehdr& h) { h.e_machine = static_cast<Elf32_Half>(machine); });
-    EXPECT_NE(refusal(file).find(name), std::string::npos) << refusal(file);
+    change<Elf32_Ehdr>(file, 0, [&](Elf32_Ehdr& h) { h.e_machine = static_cast<Elf32_Half>(other.machine); });
+    EXPECT_NE(refusal(file).find(other.name), std::string::npos) << refusal(file);
   }
 }
 
