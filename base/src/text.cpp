@@ -1,5 +1,7 @@
 #include "softcell/base/text.h"
 
+#include <array>
+#include <charconv>
 #include <cinttypes>
 #include <cstdio>
 
@@ -86,6 +88,25 @@ std::string counted(std::uint64_t count, std::string_view one, std::string_view 
   std::string text = std::to_string(count) + " ";
   if (count == 1) return text.append(one);
   return many.empty() ? text.append(one).append("s") : text.append(many);
+}
+
+namespace {
+
+template <class Number>
+std::string shortest_of(Number number) {
+  std::array<char, 32> text{};
+  const std::to_chars_result end = std::to_chars(text.data(), text.data() + text.size(), number);
+  SC_ASSERT(end.ec == std::errc(), "{} has more than {} digits", number, text.size());
+  return {text.data(), end.ptr};
+}
+
+}  // namespace
+
+std::string shortest(float number) { return shortest_of(number); }
+
+std::string shortest(double number) {
+  const auto narrow = static_cast<float>(number);
+  return static_cast<double>(narrow) == number ? shortest_of(narrow) : shortest_of(number);
 }
 
 std::string byte_count(std::uint64_t bytes) { return counted(bytes, "byte"); }

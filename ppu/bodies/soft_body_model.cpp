@@ -13,6 +13,7 @@
 #include "ppu/matching/matching_plan.h"
 #include "ppu/matching/rest_lattice.h"
 #include "softcell/base/assert.h"
+#include "softcell/base/text.h"
 
 namespace softcell::ppu {
 namespace {
@@ -72,9 +73,9 @@ std::vector<float> strengths_of(
 
 void check_cell_size(const SoftBodySettings& settings, float spacing) {
   if (spacing != settings.cell_size) {
-    throw std::runtime_error("a soft body's cell_size is " + std::to_string(settings.cell_size) +
+    throw std::runtime_error("a soft body's cell_size is " + base::shortest(settings.cell_size) +
                              "; it must be the spacing of the lattice it is made from, " +
-                             std::to_string(spacing));
+                             base::shortest(spacing));
   }
 }
 
@@ -251,7 +252,7 @@ std::shared_ptr<const SoftBodyModel<2>> make_soft_body_model(Lattice<2> lattice,
   validate(settings);
   check_cell_size(settings, lattice.spacing);
   if (!(contact_radius_in_cells > 0 && contact_radius_in_cells <= 1)) {
-    throw std::runtime_error("a soft body's contact radius is " + std::to_string(contact_radius_in_cells) +
+    throw std::runtime_error("a soft body's contact radius is " + base::shortest(contact_radius_in_cells) +
                              " cells; it must be above 0 and at most 1");
   }
   std::vector<float> strengths = strengths_of<2>(lattice, strength);

@@ -23,6 +23,7 @@
 #include "ppu/box2d/rest.h"
 #include "ppu/box2d/surface_contacts_2d.h"
 #include "softcell/base/assert.h"
+#include "softcell/base/text.h"
 
 namespace softcell::ppu {
 
@@ -388,7 +389,7 @@ void Box2dSoftBodies::set_filter(const SoftBody<2>& body, const CollisionFilter&
 /// @throws std::invalid_argument  it is no length of time
 static bool passes_time(float step) {
   if (!(step >= 0) || !std::isfinite(step))
-    throw std::invalid_argument("Box2dSoftBodies: a step of " + std::to_string(step) +
+    throw std::invalid_argument("Box2dSoftBodies: a step of " + base::shortest(step) +
                                 " s; expected are 0 s or more");
   return step > 0;
 }

@@ -1,4 +1,5 @@
 #include "softcell/soft_bodies/attachment.h"
+#include "softcell/base/text.h"
 
 #include <cmath>
 #include <stdexcept>
@@ -9,7 +10,7 @@ namespace {
 
 void require(bool holds, const char* name, double value, const char* range) {
   if (holds) return;
-  throw std::invalid_argument(std::string("an attachment's ") + name + " is " + std::to_string(value) +
+  throw std::invalid_argument(std::string("an attachment's ") + name + " is " + base::shortest(value) +
                               "; it must be " + range);
 }
 

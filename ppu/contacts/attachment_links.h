@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "ppu/contacts/attachment_rows.h"
+#include "softcell/base/text.h"
 #include "softcell/soft_bodies/attachment.h"
 
 namespace softcell::ppu {
@@ -38,7 +39,7 @@ AttachmentFrame<kDimension> frame_in_world(const AttachmentSettings<kDimension>&
 /// @throws std::invalid_argument  not the seconds in which an attachment can be moved
 inline void check_seconds_of_move(float seconds) {
   if (!(seconds >= 0) || !std::isfinite(seconds))
-    throw std::invalid_argument("an attachment is moved within " + std::to_string(seconds) +
+    throw std::invalid_argument("an attachment is moved within " + base::shortest(seconds) +
                                 " s; it must be 0 or above, and finite");
 }
 

@@ -1,4 +1,5 @@
 #include "ppu/contacts/attachment_patch.h"
+#include "softcell/base/text.h"
 
 #include <algorithm>
 #include <cmath>
@@ -28,15 +29,15 @@ void check(const Patch<kDimension>& patch, const SoftBody<kDimension>& body) {
   check_numbers(patch.particles, body.model().particles(), "particle");
   check_numbers(patch.cells, body.model().lattice().cells.size(), "cell");
   if (patch.radius != 0 && (!std::isfinite(patch.radius) || patch.radius < 0 || !patch.centre.allFinite()))
-    throw std::invalid_argument("the radius of a patch is " + std::to_string(patch.radius) +
+    throw std::invalid_argument("the radius of a patch is " + base::shortest(patch.radius) +
                                 " m; it must be above 0 and its centre finite");
 }
 
 template <int kDimension>
 [[noreturn]] void refuse_empty(const Patch<kDimension>& patch, const char* what, float nearest) {
   throw std::invalid_argument(std::string("no ") + what + " of the soft body is within " +
-                              std::to_string(patch.radius) + " m of the middle of a patch; the nearest is " +
-                              std::to_string(nearest) + " m away");
+                              base::shortest(patch.radius) + " m of the middle of a patch; the nearest is " +
+                              base::shortest(nearest) + " m away");
 }
 
 template <int kDimension>

@@ -11,6 +11,7 @@
 
 #include "ppu/lattice/locate.h"
 #include "softcell/base/assert.h"
+#include "softcell/base/text.h"
 
 namespace softcell::ppu {
 namespace {
@@ -29,8 +30,8 @@ std::vector<PlaceInCell> locate_all(const TriangleMesh& mesh, const Lattice<3>& 
       const bool is_used = std::ranges::any_of(mesh.triangles, [&](const auto& triangle) {
         return std::ranges::find(triangle, v) != triangle.end();
       });
-      throw std::runtime_error("vertex " + std::to_string(v) + " at (" + std::to_string(p.x()) + ", " +
-                               std::to_string(p.y()) + ", " + std::to_string(p.z()) +
+      throw std::runtime_error("vertex " + std::to_string(v) + " at (" + base::shortest(p.x()) + ", " +
+                               base::shortest(p.y()) + ", " + base::shortest(p.z()) +
                                ") lies in no cell of the lattice; " +
                                (is_used ? "the lattice must cover the mesh"
                                         : "it belongs to no triangle, so leave it out of the mesh"));

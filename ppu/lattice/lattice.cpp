@@ -10,6 +10,7 @@
 #include "ppu/lattice/links.h"
 #include "ppu/numbers/sorted_lists.h"
 #include "softcell/base/assert.h"
+#include "softcell/base/text.h"
 
 namespace softcell::ppu {
 
@@ -93,7 +94,7 @@ template <int kDimension>
 Lattice<kDimension> make_lattice(std::span<const GridIndex<kDimension>> cells, float spacing,
                                  const typename Lattice<kDimension>::Position& origin) {
   if (!(spacing > 0) || !std::isfinite(spacing))
-    throw std::runtime_error("lattice spacing " + std::to_string(spacing) + " m: expected a positive number");
+    throw std::runtime_error("lattice spacing " + base::shortest(spacing) + " m: expected a positive number");
   if (cells.empty()) throw std::runtime_error("a lattice needs at least one cell");
 
   Lattice<kDimension> lattice;
@@ -172,7 +173,7 @@ std::vector<Eigen::Vector2i> cells_from_rows(std::span<const std::string> rows) 
 template <int kDimension>
 std::vector<float> particle_masses(const Lattice<kDimension>& lattice, float density) {
   if (!(density > 0) || !std::isfinite(density))
-    throw std::invalid_argument("density " + std::to_string(density) +
+    throw std::invalid_argument("density " + base::shortest(density) +
                                 (kDimension == 2 ? " kg/m^2" : " kg/m^3") + ": expected a positive number");
   SC_ASSERT(lattice.fill.size() == lattice.cells.size() && lattice.corners.size() == lattice.cells.size(),
             "{} cells with {} fills and the corners of {}", lattice.cells.size(), lattice.fill.size(),

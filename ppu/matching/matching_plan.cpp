@@ -9,6 +9,7 @@
 #include "ppu/matching/one_plate.h"
 #include "ppu/matching/regions.h"
 #include "softcell/base/assert.h"
+#include "softcell/base/text.h"
 
 namespace softcell::ppu {
 namespace {
@@ -29,7 +30,7 @@ void check_masses(std::span<const float> masses, std::size_t particles) {
   for (std::size_t i = 0; i < masses.size(); ++i)
     if (!(masses[i] > 0) || !std::isfinite(masses[i]))
       throw std::invalid_argument("MatchingPlan: the mass of particle " + std::to_string(i) + " is " +
-                                  std::to_string(masses[i]) + " kg; expected a positive number");
+                                  base::shortest(masses[i]) + " kg; expected a positive number");
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "ppu/numbers/deterministic_math.h"
+#include "softcell/base/text.h"
 
 namespace softcell::ppu {
 
@@ -13,7 +14,7 @@ namespace {
 
 void check(bool good, const char* name, double value, const char* expected) {
   if (!good)
-    throw std::invalid_argument(std::string(name) + " " + std::to_string(value) + ": expected " + expected);
+    throw std::invalid_argument(std::string(name) + " " + base::shortest(value) + ": expected " + expected);
 }
 
 void check_positive(const char* name, double value) {

@@ -6,6 +6,7 @@
 
 #include "ppu/numbers/box_around.h"
 #include "softcell/base/assert.h"
+#include "softcell/base/text.h"
 
 namespace softcell::ppu {
 namespace {
@@ -72,8 +73,8 @@ void validate(const TriangleMesh& mesh) {
     constexpr float kLeast = 1e-20f;  // of a square, whose root and inverse are numbers
     if (normal.squaredNorm() >= kLeast && std::isfinite(normal.squaredNorm())) continue;
     throw std::invalid_argument("normal " + std::to_string(i) + " of a mesh is " +
-                                std::to_string(normal.x()) + ", " + std::to_string(normal.y()) + ", " +
-                                std::to_string(normal.z()) + "; a unit vector was expected");
+                                base::shortest(normal.x()) + ", " + base::shortest(normal.y()) + ", " +
+                                base::shortest(normal.z()) + "; a unit vector was expected");
   }
   if (!mesh.texture_coordinates.empty())
     require_one_for_each("texture coordinates", mesh.texture_coordinates.size(), positions);

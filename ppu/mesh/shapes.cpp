@@ -13,6 +13,7 @@
 #include "ppu/mesh/vertex_normals.h"
 #include "ppu/numbers/deterministic_math.h"
 #include "softcell/base/assert.h"
+#include "softcell/base/text.h"
 
 namespace softcell::ppu {
 namespace {
@@ -23,7 +24,7 @@ using Triangle = std::array<std::uint32_t, 3>;
 void require_length(double value, const char* what) {
   if (!(value > 0) || !std::isfinite(value)) {
     throw std::invalid_argument(std::string(what) + " must be positive and finite, not " +
-                                std::to_string(value));
+                                base::shortest(value));
   }
 }
 
@@ -415,8 +416,8 @@ TriangleMesh make_capsule(float radius, float height, int segments) {
   require_length(height, "a capsule's height");
   require_count(segments, 3, 2048, "a capsule's segments");
   if (!(height > 2 * radius)) {
-    throw std::invalid_argument("a capsule's height is " + std::to_string(height) +
-                                "; it must be more than twice its radius, " + std::to_string(radius));
+    throw std::invalid_argument("a capsule's height is " + base::shortest(height) +
+                                "; it must be more than twice its radius, " + base::shortest(radius));
   }
   const double r = static_cast<double>(radius), middle = 0.5 * static_cast<double>(height) - r;
   const int rings = std::max(2, segments / 4);  // of half a sphere

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "softcell/base/assert.h"
+#include "softcell/base/text.h"
 
 namespace softcell::ppu {
 namespace {
@@ -104,7 +105,7 @@ bool halve_long_edges(TriangleMesh& mesh, float longest) {
     if (part < parts.size())
       parts[part].triangle_count += static_cast<std::uint32_t>(triangles.size() - before - 1);
     if (triangles.size() > kMaxTessellatedTriangles)
-      throw std::invalid_argument("with edges of at most " + std::to_string(longest) +
+      throw std::invalid_argument("with edges of at most " + base::shortest(longest) +
                                   " m a mesh has more than " + std::to_string(kMaxTessellatedTriangles) +
                                   " triangles; give it longer ones");
   }

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "softcell/base/assert.h"
+#include "softcell/base/text.h"
 
 namespace softcell::ppu {
 
@@ -26,13 +27,13 @@ inline void check_sizes(std::size_t particles, std::size_t positions, std::size_
 inline void check_step(double alpha, double damping, double h) {
   const auto check_range = [](const char* name, double value) {
     if (!(value >= 0 && value <= 1))
-      throw std::invalid_argument(std::string("ShapeMatcher: ") + name + " " + std::to_string(value) +
+      throw std::invalid_argument(std::string("ShapeMatcher: ") + name + " " + base::shortest(value) +
                                   ": expected 0 to 1");
   };
   check_range("alpha", alpha);
   check_range("damping", damping);
   if (!(h > 0) || !std::isfinite(h))
-    throw std::invalid_argument("ShapeMatcher: time step " + std::to_string(h) +
+    throw std::invalid_argument("ShapeMatcher: time step " + base::shortest(h) +
                                 " s: expected a positive number");
 }
 

@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "softcell/base/text.h"
 #include "softcell/dma/address_space.h"
 #include "softcell/jobs/job_system.h"
 
@@ -21,7 +22,7 @@ inline dma::BufferOptions of_floats(dma::BufferOptions options = {}) {
 /// @throws std::invalid_argument  `value` is not within 0..most.
 inline void check_setting(const char* name, float value, float most) {
   if (!(value >= 0 && value <= most))
-    throw std::invalid_argument(std::string("matching on SPEs: ") + name + " " + std::to_string(value) +
+    throw std::invalid_argument(std::string("matching on SPEs: ") + name + " " + base::shortest(value) +
                                 ": expected a finite number of 0 or more" +
                                 (most == 1 ? std::string(", at most 1") : std::string()));
 }

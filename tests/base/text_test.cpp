@@ -4,6 +4,7 @@
 
 #include "softcell/base/nearest_name.h"
 
+#include <cmath>
 #include <string>
 #include <string_view>
 
@@ -58,6 +59,19 @@ TEST(NearestName, IsTheOneThatIsASlipAway) {
   EXPECT_EQ(nearest_name("remort", kVerbs), "report") << "replaced";
   EXPECT_EQ(nearest_name("dance", kVerbs), "");
   EXPECT_EQ(nearest_name("", kVerbs), "");
+}
+
+TEST(Shortest, HasTheDigitsThatTellANumberFromOthers) {
+  EXPECT_EQ(shortest(0.1f), "0.1");
+  EXPECT_EQ(shortest(std::nextafter(0.1f, 1.0f)), "0.10000001");
+  EXPECT_EQ(shortest(1e-8f), "1e-08");
+  EXPECT_EQ(shortest(-2.0f), "-2");
+  EXPECT_EQ(shortest(0.1), "0.1");
+  EXPECT_EQ(shortest(static_cast<double>(0.1f)), "0.1") << "a float that has become a double";
+  EXPECT_EQ(shortest(1e300), "1e+300");
+  EXPECT_EQ(shortest(-1.2345678901234567e-300), "-1.2345678901234567e-300");
+  EXPECT_EQ(shortest(NAN), "nan");
+  EXPECT_EQ(shortest(-INFINITY), "-inf");
 }
 
 }  // namespace

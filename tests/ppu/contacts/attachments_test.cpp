@@ -439,11 +439,11 @@ TEST(Attachments, SayWhatIsOutOfRange) {
     return refusal([&] { w.bodies.attach(body, its_patch, settings); });
   };
   EXPECT_EQ(refuse(patch, {.compliance = -1}),
-            "an attachment's compliance is -1.000000; it must be in m/N, 0 or above, and finite");
+            "an attachment's compliance is -1; it must be in m/N, 0 or above, and finite");
   EXPECT_EQ(refuse(patch, {.break_force = 0}),
-            "an attachment's break_force is 0.000000; it must be in newtons and above 0");
+            "an attachment's break_force is 0; it must be in newtons and above 0");
   EXPECT_EQ(refuse(patch, {.kind = AttachmentKind::kRope, .length = -2}),
-            "an attachment's length is -2.000000; it must be in metres, above 0, and finite");
+            "an attachment's length is -2; it must be in metres, above 0, and finite");
   EXPECT_EQ(refuse(patch, {.length = 2}), "an attachment has a length and is no rope; only ropes have one");
   EXPECT_EQ(refuse(patch, {.kind = AttachmentKind::kRope}),
             "a rope to the world has no point; it needs the place of its other end");
@@ -456,14 +456,14 @@ TEST(Attachments, SayWhatIsOutOfRange) {
   EXPECT_EQ(refuse(Patch<3>::of_particles({64}), {}),
             "a patch has particle 64; the soft body has 64, numbered from 0");
   EXPECT_EQ(refuse(Patch<3>::of_surface({2.15f, 0, 0}, 0.5f), {}).substr(0, 92),
-            "no surface of the soft body is within 0.500000 m of the middle of a patch; the nearest is 2.");
+            "no surface of the soft body is within 0.5 m of the middle of a patch; the nearest is 2.");
   EXPECT_EQ(refusal([&] { w.bodies.attach(body, patch, body, patch); }),
             "a soft body cannot be attached to itself");
   const AttachmentId weld = w.bodies.attach(body, patch);
   EXPECT_EQ(refusal([&] {
               w.bodies.move_attachment(weld, {0, 0, 0}, Eigen::Quaternionf::Identity(), -1);
             }),
-            "an attachment is moved within -1.000000 s; it must be 0 or above, and finite");
+            "an attachment is moved within -1 s; it must be 0 or above, and finite");
   EXPECT_EQ(refusal([&] { w.bodies.detach(AttachmentId{7}); }), "there is no attachment 7");
 
   BulletSoftBodies spheres(w.world, ContactMethod::kSpheres);

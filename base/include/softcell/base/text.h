@@ -28,6 +28,11 @@ std::string hex(std::uint64_t value, int digits = 1);
 /// @param many  the plural, where it is not `one` with an s.
 std::string counted(std::uint64_t count, std::string_view one, std::string_view many = {});
 
+/// A number with as few digits as tell it from all others of its type: "0.1", "1e-08", "nan".
+std::string shortest(float number);
+/// The same; a double that is a float, too, has a float's digits.
+std::string shortest(double number);
+
 /// "1 byte", "16 bytes".
 std::string byte_count(std::uint64_t bytes);
 
