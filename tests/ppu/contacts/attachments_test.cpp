@@ -455,8 +455,8 @@ TEST(Attachments, SayWhatIsOutOfRange) {
   EXPECT_EQ(refuse({}, {}), "a patch has 0 of particles, cells and a radius; it needs exactly one of them");
   EXPECT_EQ(refuse(Patch<3>::of_particles({64}), {}),
             "a patch has particle 64; the soft body has 64, numbered from 0");
-  EXPECT_EQ(refuse(Patch<3>::of_surface({2.15f, 0, 0}, 0.5f), {}).substr(0, 92),
-            "no surface of the soft body is within 0.5 m of the middle of a patch; the nearest is 2.");
+  EXPECT_EQ(refuse(Patch<3>::of_surface({2.15f, 0, 0}, 0.5f), {}),
+            "no surface of the soft body is within 0.5 m of the middle of a patch; the nearest is 2 m away");
   EXPECT_EQ(refusal([&] { w.bodies.attach(body, patch, body, patch); }),
             "a soft body cannot be attached to itself");
   const AttachmentId weld = w.bodies.attach(body, patch);
