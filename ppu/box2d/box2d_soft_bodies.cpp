@@ -22,6 +22,7 @@
 #include "ppu/box2d/parting_pieces.h"
 #include "ppu/box2d/rest.h"
 #include "ppu/box2d/surface_contacts_2d.h"
+#include "ppu/numbers/segment_and_box.h"
 #include "softcell/base/assert.h"
 #include "softcell/base/text.h"
 
@@ -451,13 +452,13 @@ std::optional<SoftRayHit2d> Box2dSoftBodies::cast_ray(const Eigen::Vector2f& fro
                                                       const CollisionFilter& filter) const {
   SC_ASSERT(from.allFinite() && to.allFinite(), "a ray from ({}, {})", from.x(), from.y());
   std::optional<SoftRayHit2d> nearest;
-  const Bounds<2> of_ray{from.cwiseMin(to), from.cwiseMax(to)};
   for (const auto& body : impl_->bodies) {
     const SoftBody<2>& soft = body->soft();
     // What is drawn lies beyond the particles by half a cell at most, which may be stretched, but not further than the body.
     const Bounds<2> box = soft.bounds();
     const Eigen::Vector2f size = box.high - box.low;
-    if (!body->filter().lets(filter) || !overlap({box.low - size, box.high + size}, of_ray)) continue;
+    if (!body->filter().lets(filter) || !meets(from, to, Bounds<2>{box.low - size, box.high + size}))
+      continue;
     const auto hit = impl_->query(soft).cast_ray(from, to);
     if (hit && (!nearest || hit->share < nearest->hit.share)) nearest = SoftRayHit2d{&soft, *hit};
   }

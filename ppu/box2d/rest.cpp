@@ -76,7 +76,8 @@ std::span<Box2dBody* const> Rest::settle(Box2dBody& body, const SleepSettings& s
     }
   }
   for (Box2dBody* const resting : soft_) resting->fall_asleep();
-  for (b2Body* const resting : rigid_) resting->SetAwake(false);
+  for (b2Body* const resting : rigid_)
+    if (resting->GetType() == b2_dynamicBody) resting->SetAwake(false);  // others would stop
   return soft_;
 }
 

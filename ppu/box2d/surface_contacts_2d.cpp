@@ -116,18 +116,36 @@ void SurfaceContacts2d::begin(Bodies bodies, const Box2dAttachments& attachments
     std::erase_if(in_stage.obstacles, [&](std::uint32_t obstacle) {
       return attachments.parts(body, *obstacles_.bodies()[obstacles_.obstacles()[obstacle].rigid]);
     });
-    if (soft.asleep() && must_wake(kept, in_stage)) body.wake();
+    if (!soft.asleep()) kept.seen.clear();
+    if (soft.asleep() && must_wake(kept, soft, in_stage)) body.wake();
     if (!soft.asleep() && kept.lies()) rise(kept);
   }
 }
 
+/// Whether a body near a sleeper has gone, however slowly, from where it was when it was seen first, by more than contacts let it be in the
+/// sleeper.
+bool SurfaceContacts2d::notices(Kept& kept, const SoftBody<2>& sleeper, b2Body& body) {
+  constexpr float kCreep = 0.02f;  // cells
+  const auto known = std::ranges::find(kept.seen, &body, &Support::body);
+  if (known == kept.seen.end()) {
+    kept.seen.push_back({&body, body.GetTransform()});
+    return false;
+  }
+  const Eigen::Vector2f centre = sleeper.centre_of_mass();
+  const b2Vec2 middle{centre.x(), centre.y()};
+  const b2Vec2 there = b2Mul(body.GetTransform(), b2MulT(known->pose, middle));
+  const float far = kCreep * sleeper.model().lattice().spacing;
+  return b2DistanceSquared(there, middle) > far * far;
+}
+
 /// What lies beside it has begun to move, or what it lies on is gone.
-bool SurfaceContacts2d::must_wake(const Kept& kept, const BodyInStage& in_stage) const {
+bool SurfaceContacts2d::must_wake(Kept& kept, const SoftBody<2>& sleeper, const BodyInStage& in_stage) const {
   const auto is_gone = [&](const Support& support) {
     return !obstacles_.has(support.body) || !is_same(support.body->GetTransform(), support.pose);
   };
   const auto moves_there = [&](std::uint32_t obstacle) {
-    return moves(*obstacles_.bodies()[obstacles_.obstacles()[obstacle].rigid]);
+    b2Body& body = *obstacles_.bodies()[obstacles_.obstacles()[obstacle].rigid];
+    return moves(body) || notices(kept, sleeper, body);
   };
   return kept.lost_support || std::ranges::any_of(kept.supports, is_gone) ||
          std::ranges::any_of(in_stage.obstacles, moves_there);

@@ -92,6 +92,7 @@ class SurfaceContacts2d {
     std::vector<Support> supports;                       // while it sleeps
     std::vector<const Box2dBody*> lies_on;               // likewise
     bool lost_support = false;                           // one of these is gone
+    std::vector<Support> seen;  // what lies near, where it was at first, while it sleeps
     bool lies() const { return lost_support || !supports.empty() || !lies_on.empty(); }
   };
 
@@ -99,7 +100,8 @@ class SurfaceContacts2d {
   void lift(const Box2dBody& body, Kept& kept, float step);
   void begin(Bodies bodies, const Box2dAttachments& attachments, float step);
   void begin_attachments(Bodies bodies, Box2dAttachments& attachments, float step);
-  bool must_wake(const Kept& kept, const BodyInStage& in_stage) const;
+  static bool notices(Kept& kept, const SoftBody<2>& sleeper, b2Body& body);
+  bool must_wake(Kept& kept, const SoftBody<2>& sleeper, const BodyInStage& in_stage) const;
   void rise(Kept& kept);
   void wake_those_in_the_way(Bodies bodies);
   void move(Bodies bodies, float step);

@@ -22,6 +22,7 @@
 #include "ppu/bullet/processor_time.h"
 #include "ppu/bullet/sphere_body.h"
 #include "ppu/bullet/surface_contacts.h"
+#include "ppu/numbers/segment_and_box.h"
 #include "softcell/base/assert.h"
 
 namespace softcell::ppu {
@@ -401,10 +402,8 @@ std::optional<SoftRayHit> BulletSoftBodies::cast_ray(const Eigen::Vector3f& from
                                                      const CollisionFilter& filter) const {
   SC_ASSERT(from.allFinite() && to.allFinite(), "a ray from ({}, {}, {})", from.x(), from.y(), from.z());
   std::optional<SoftRayHit> nearest;
-  const Eigen::Vector3f middle = 0.5f * (from + to), half = 0.5f * (to - from).cwiseAbs();
   for (const auto& body : impl_->bodies) {
-    const Bounds<3> box = body->soft().bounds();
-    if (!body->filter().lets(filter) || !overlap(box, {middle - half, middle + half})) continue;
+    if (!body->filter().lets(filter) || !meets(from, to, body->soft().bounds())) continue;
     const auto hit = SurfaceQuery(body->soft()).cast_ray(from, to);
     if (hit && (!nearest || hit->share < nearest->hit.share)) nearest = SoftRayHit{&body->soft(), *hit};
   }

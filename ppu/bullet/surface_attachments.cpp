@@ -208,8 +208,9 @@ void SurfaceAttachments::begin() {
     const bool awake =
         std::any_of(island.bodies.begin(), island.bodies.end(),
                     [](const auto* body) { return !body->soft().asleep(); }) ||
-        std::any_of(island.rigids.begin(), island.rigids.end(), [](const auto* rigid) {
-          return rigid->isActive() && (is_moved_by_bullet(*rigid) || !is_slow(*rigid, kMovesFrom));
+        std::any_of(island.rigids.begin(), island.rigids.end(), [&](const auto* rigid) {
+          return (rigid->isActive() && (is_moved_by_bullet(*rigid) || !is_slow(*rigid, kMovesFrom))) ||
+                 (!island.bodies.empty() && island.bodies.front()->notices(*rigid));
         });
     if (!awake) continue;
     for (SurfaceBody* const body : island.bodies)

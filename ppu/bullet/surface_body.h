@@ -1,10 +1,12 @@
 #pragma once
 // A soft body that touches with its drawn surface. Bullet does not know it: surface_contacts.h moves it.
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "ppu/bullet/bullet_vector.h"
 #include "ppu/bullet/coupled_body.h"
@@ -51,6 +53,10 @@ class SurfaceBody final : public CoupledBody {
       if (sleep && !falls_another_way()) return;
       rouse();
     }
+    if (!soft_.asleep()) {
+      box_asleep_.reset();
+      seen_.clear();
+    }
     if (sleep) count_stillness(step, *sleep);
   }
 
@@ -73,12 +79,41 @@ class SurfaceBody final : public CoupledBody {
 
   bool can_be_touched() const override { return true; }
   bool can_break() const override { return true; }
-  Bounds<3> box() const override { return soft_.bounds(); }
+  /// Where it is and, moved by the program while it slept, where it has slept.
+  Bounds<3> box() const override {
+    Bounds<3> box = soft_.bounds();
+    if (box_asleep_) box = {box.low.cwiseMin(box_asleep_->low), box.high.cwiseMax(box_asleep_->high)};
+    return box;
+  }
+
+  /// While it sleeps: whether the object has gone, however slowly, from where it was when it was seen first, by more than contacts let it
+  /// be in the body.
+  bool notices(const btCollisionObject& object) {
+    if (!box_asleep_) box_asleep_ = soft_.bounds();  // a sleeper that was assigned to it
+    const btVector3 middle = to_bullet(0.5f * (box_asleep_->low + box_asleep_->high));
+    const auto known = std::ranges::find(seen_, &object, &Seen::object);
+    if (known == seen_.end()) {
+      seen_.push_back({&object, object.getWorldTransform()});
+      return false;
+    }
+    const btVector3 there = object.getWorldTransform() * known->place.invXform(middle);
+    const float far = kCreep * soft_.model().lattice().spacing;
+    return there.distance2(middle) > far * far;
+  }
   float reach() const override { return 0.1f * soft_.model().lattice().spacing; }
 
  private:
-  void fall_asleep() override {}
+  /// What lies near a sleeper.
+  struct Seen {
+    const btCollisionObject* object;
+    btTransform place;  // at first
+  };
+  static constexpr float kCreep = 0.02f;  // cells
 
+  void fall_asleep() override { box_asleep_ = soft_.bounds(); }
+
+  std::optional<Bounds<3>> box_asleep_;
+  std::vector<Seen> seen_;  // since it fell asleep
   const ContactModel* contact_;
   std::uint32_t number_;
   bool holds_a_moving_body_ = false;

@@ -79,7 +79,10 @@ void SurfaceContacts::step(std::span<SurfaceBody* const> bodies, float step) {
     obstacles_.add_near(in_stage.box, bodies[i]->filter().group, bodies[i]->filter().mask,
                         in_stage.obstacles);
     if (!attachments_.empty()) attachments_.part(*bodies[i], obstacles_, in_stage.obstacles);
-    if (bodies[i]->soft().asleep() && any_near(in_stage, moves)) bodies[i]->rouse();
+    const auto disturbs = [&](const btCollisionObject& object) {
+      return moves(object) || bodies[i]->notices(object);
+    };
+    if (bodies[i]->soft().asleep() && any_near(in_stage, disturbs)) bodies[i]->rouse();
     in_stage.filter = bodies[i]->filter();
   }
   wake_those_in_the_way(bodies);

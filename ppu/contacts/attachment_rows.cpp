@@ -235,6 +235,7 @@ AttachmentRows<kDimension>::AttachmentRows(const AttachmentSettings<kDimension>&
         Row& row = rows_.emplace_back();
         row.a = a_.append(a.particles[i], 1);
         row.own = frame.to_own(a.positions[i]);
+        row.share = a.masses[i];
       }
       break;
     case AttachmentKind::kHinge:
@@ -599,12 +600,14 @@ AttachmentEnds<kDimension> AttachmentRows<kDimension>::ends(std::span<const Vect
                                                             std::span<const Vector> b,
                                                             const AttachmentFrame<kDimension>& frame) const {
   AttachmentEnds<kDimension> ends{.length = length_};
+  float shares = 0;
   for (const Row& row : rows_) {
-    ends.patch += a_.of(row.a, a);
-    ends.other += b.empty() ? frame.to_world(row.own) : b_.of(row.b, b);
+    ends.patch += row.share * a_.of(row.a, a);
+    ends.other += row.share * (b.empty() ? frame.to_world(row.own) : b_.of(row.b, b));
+    shares += row.share;
   }
-  ends.patch /= static_cast<float>(rows_.size());
-  ends.other /= static_cast<float>(rows_.size());
+  ends.patch /= shares;
+  ends.other /= shares;
   return ends;
 }
 

@@ -144,6 +144,7 @@ class AttachmentRows {
   struct Row {
     Place a, b;
     Vector own = Vector::Zero();      // in the frame
+    float share = 1;                  // of the patch's middle, against those of other rows
     Vector impulse = Vector::Zero();  // kg m/s, on a
 
     // Of this substep:

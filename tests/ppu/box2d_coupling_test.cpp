@@ -343,6 +343,17 @@ TEST_P(Box2dSleep, ASoftBodyThatFallsOnItWakesIt) {
   EXPECT_FALSE(resting.body->asleep());
 }
 
+TEST_P(Box2dSleep, NoticesWhatCreeps) {
+  Resting resting(GetParam());
+  ASSERT_TRUE(resting.body->asleep());
+  const float before = resting.body->centre_of_mass().x(), side = resting.body->bounds().low.x();
+  b2Body* const wall = resting.world.add_box({side - 1, 1}, {0.5f, 1});
+  wall->SetType(b2_kinematicBody);
+  wall->SetLinearVelocity({0.04f, 0});
+  resting.world.run(25);  // a metre, of which half is before it comes
+  EXPECT_NEAR(resting.body->centre_of_mass().x(), before + 0.5f, 0.2f);
+}
+
 TEST_P(Box2dSleep, WakesWhenGravityTurns) {
   Resting resting(GetParam());
   ASSERT_TRUE(resting.body->asleep());

@@ -355,6 +355,41 @@ TEST_P(SolvedBy, FollowAPointThatTheProgramMoves) {
             0.999f);
 }
 
+TEST(Attachments, WhereAWeldIsHeldIsWhereItMayBeMovedTo) {
+  ContactWorld w({0, 0, 0});
+  const SoftBody<3>& body = w.add(make_box({0.6f, 0.6f, 0.6f}, 0.2f), {.cell_size = 0.2f}, {0, 0, 0});
+  for (const auto& patch : {Patch<3>::of_cells({2, 5, 8}), Patch<3>::of_surface({0, 0.3f, 0}, 0.25f)}) {
+    const AttachmentId weld = w.bodies.attach(body, patch);
+    w.run(1);
+    const Vector3f before = body.centre_of_mass();
+    for (int i = 0; i < 5; ++i) {
+      w.bodies.move_attachment(weld, w.bodies.attachment_ends(weld)->other);
+      w.run(60);
+    }
+    EXPECT_LT((body.centre_of_mass() - before).norm(), 1e-4f);
+    w.bodies.detach(weld);
+  }
+}
+
+TEST(Attachments, ASleeperFollowsWhatItHangsFromHoweverSlow) {
+  ContactWorld w;
+  w.bodies.let_sleep(SleepSettings{});
+  const SoftBody<3>& body =
+      w.add(make_box({0.6f, 0.6f, 0.6f}, 0.2f), {.cell_size = 0.2f, .damping = 0.3f}, {0, 0, 0});
+  btRigidBody& carrier = w.add(std::make_unique<btBoxShape>(btVector3(0.5f, 0.1f, 0.5f)), 0, {0, 0.4f, 0});
+  carrier.setCollisionFlags(btCollisionObject::CF_KINEMATIC_OBJECT);
+  carrier.setActivationState(DISABLE_DEACTIVATION);
+  w.bodies.attach(body, Patch<3>::of_surface({0, 0.3f, 0}, 0.5f), carrier);
+  w.run(300);
+  ASSERT_TRUE(body.asleep());
+  float x = 0;
+  for (; x < 0.3f; x += 0.024f / 60) {
+    carrier.setWorldTransform(btTransform(btQuaternion::getIdentity(), btVector3(x, 0.4f, 0)));
+    w.run(1);
+  }
+  EXPECT_NEAR(body.centre_of_mass().x(), 0.3f, 0.02f);
+}
+
 TEST(Attachments, WhatIsAttachedSleepsAndWakesTogether) {
   ContactWorld w;
   w.bodies.let_sleep(SleepSettings{.speed = 0.1f, .seconds = 0.2f});

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <random>
 #include <stdexcept>
@@ -287,6 +288,56 @@ TEST(SurfaceContacts, WhatRestsSleepsAndWakesWhereItIsTouched) {
   w.run(900);
   EXPECT_TRUE(upper.asleep() && lower.asleep());
   EXPECT_NEAR(upper.centre_of_mass().y() - lower.centre_of_mass().y(), 0.37f, 0.08f);
+}
+
+/// What creeps is met, too, by more than contacts let it be in the sleeper.
+TEST(SurfaceContacts, ASleeperNoticesWhatCreeps) {
+  for (const float speed : {0.02f, 0.045f}) {
+    ContactWorld w;
+    btRigidBody& floor = w.add_floor();
+    w.bodies.let_sleep(SleepSettings{});
+    const SoftBody<3>& body = w.add(cube(0.4f, 0.1f), settings_of(0.1f, 0.6f, 0.4f), {0, 0.2f, 0});
+    w.run(240);
+    ASSERT_TRUE(body.asleep());
+    btRigidBody& wall = w.add(std::make_unique<btBoxShape>(btVector3(0.5f, 1, 1)), 0, {-0.72f, 1, 0});
+    wall.setCollisionFlags(btCollisionObject::CF_KINEMATIC_OBJECT);
+    wall.setActivationState(DISABLE_DEACTIVATION);
+    const float before = body.centre_of_mass().x();
+    float x = -0.72f;
+    for (; x < -0.4f; x += speed / 60) {
+      wall.setWorldTransform(btTransform(btQuaternion::getIdentity(), btVector3(x, 1, 0)));
+      w.run(1);
+    }
+    EXPECT_NEAR(body.centre_of_mass().x(), before + 0.3f, 0.04f) << speed << " m/s";
+    w.run(240);
+    ASSERT_TRUE(body.asleep());
+    floor.setWorldTransform(btTransform(btQuaternion::getIdentity(), btVector3(0, -1.3f, 0)));
+    w.run(120);
+    EXPECT_LT(body.bounds().low.y(), -0.2f) << "what it lay on is elsewhere";
+  }
+}
+
+TEST(SurfaceContacts, ASleeperFallsWhenTheBodyBelowIsTakenAway) {
+  const std::vector<std::function<void(SoftBody<3>&)>> ways = {
+      [](SoftBody<3>& lower) {
+        lower.translate({5, 0, 0});
+      },
+      [](SoftBody<3>& lower) {
+        lower.reset({5, 1, 0});
+      },
+  };
+  for (const auto& take_away : ways) {
+    ContactWorld w;
+    w.add_floor();
+    w.bodies.let_sleep(SleepSettings{});
+    SoftBody<3>& lower = w.add(cube(0.6f, 0.2f), settings_of(0.2f, 0.8f, 0.4f), {0, 0.3f, 0});
+    const SoftBody<3>& upper = w.add(cube(0.6f, 0.2f), settings_of(0.2f, 0.8f, 0.4f), {0, 0.9f, 0});
+    w.run(600);
+    ASSERT_TRUE(lower.asleep() && upper.asleep());
+    take_away(lower);
+    w.run(240);
+    EXPECT_LT(upper.centre_of_mass().y(), 0.4f);
+  }
 }
 
 /// Sleepers of different sizes share what says that nothing moves them.

@@ -154,6 +154,11 @@ TEST(SoftBodiesInBullet, ARayMeetsTheNearestBodyThatItsFilterLets) {
   w.bodies.set_filter(near, {.group = 4, .mask = -1});
   EXPECT_EQ(w.bodies.cast_ray({-5, 0, 0}, {5, 0, 0}, {.group = 1, .mask = ~4})->body, &far);
   EXPECT_FALSE(w.bodies.cast_ray({-5, 2, 0}, {5, 2, 0}));
+  for (const float far_away : {1e3f, 1e6f, 1e10f}) {
+    const auto long_ray = w.bodies.cast_ray({-5, 0, 0}, {far_away, 0, 0});
+    ASSERT_TRUE(long_ray) << far_away;
+    EXPECT_EQ(long_ray->body, hit->body);
+  }
   const SoftBody<3> stranger = unit_cube();
   EXPECT_THROW(w.bodies.set_filter(stranger, {}), std::invalid_argument);
 }

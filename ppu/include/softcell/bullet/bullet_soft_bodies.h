@@ -80,8 +80,8 @@ struct SoftRayHit {
 /// stepSimulation() throws std::runtime_error.
 class BulletSoftBodies {
  public:
-  /// A particle moves at most this many cells in one substep; faster particles are slowed down, which takes momentum
-  /// from their body. Contacts are found before they happen within such a distance, so nothing passes through a floor.
+  /// With ContactMethod::kSpheres a particle moves at most this many cells in one substep; faster particles are slowed down, which takes
+  /// momentum from their body. Contacts are found before they happen within such a distance, so nothing passes through a floor.
   /// With cells of 0.2 m and substeps of 1/120 s the limit is 24 m/s, the speed after a fall of 29 m.
   static constexpr float kMaxTravelInCells = 1.0f;
 
@@ -196,7 +196,8 @@ class BulletSoftBodies {
   std::vector<ContactEvent> poll_contact_events();
 
   /// The first point at which the line from `from` to `to` (metres) meets the drawn surface of one of these bodies, from inside or outside.
-  /// Each body whose box the line meets costs some microseconds for a thousand triangles: for many rays keep a SurfaceQuery for each body.
+  /// Each body whose box the line meets costs about half a microsecond for each of its triangles: for many rays keep a SurfaceQuery for each
+  /// body.
   /// @param filter  the ray passes through bodies that may not touch something with this filter  @pre from and to are finite
   std::optional<SoftRayHit> cast_ray(const Eigen::Vector3f& from, const Eigen::Vector3f& to,
                                      const CollisionFilter& filter = {}) const;
