@@ -457,9 +457,11 @@ const BulletObstacles::Hull& BulletObstacles::hull_of(const btConvexShape& shape
   return hull;
 }
 
-void BulletObstacles::apply() {
+void BulletObstacles::apply(const std::vector<bool>& at_rest) {
+  SC_ASSERT(at_rest.size() == rigids_.size(), "what rests of {} of {} rigid bodies", at_rest.size(),
+            rigids_.size());
   for (std::size_t i = 0; i < rigids_.size(); ++i) {
-    if (rigids_[i].inverse_mass == 0) continue;
+    if (rigids_[i].inverse_mass == 0 || (at_rest[i] && !objects_[i]->isActive())) continue;
     const Vector3f dv = rigids_[i].velocity - before_[i].velocity, dw = rigids_[i].spin - before_[i].spin;
     if (dv.isZero(0) && dw.isZero(0)) continue;
     SC_ASSERT(btRigidBody::upcast(objects_[i]) != nullptr, "object {} of {} has a mass and is no rigid body",
@@ -467,7 +469,7 @@ void BulletObstacles::apply() {
     btRigidBody& body = *btRigidBody::upcast(objects_[i]);
     body.setLinearVelocity(body.getLinearVelocity() + to_bullet(dv));
     body.setAngularVelocity(body.getAngularVelocity() + to_bullet(dw));
-    body.activate();
+    if (!at_rest[i]) body.activate();
   }
 }
 

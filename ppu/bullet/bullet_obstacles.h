@@ -46,7 +46,8 @@ class BulletObstacles {
   std::span<btCollisionObject* const> objects() const { return objects_; }
 
   /// Gives rigid bodies the velocities that contacts have given their ContactRigid.
-  void apply();
+  /// @param at_rest  of each: what touches it is at rest, so that Bullet may let it fall asleep, and its sleep goes on
+  void apply(const std::vector<bool>& at_rest);
 
  private:
   /// Faces and edges of a convex hull.

@@ -58,7 +58,10 @@ class SurfaceBody final : public CoupledBody {
       seen_.clear();
     }
     if (sleep) count_stillness(step, *sleep);
+    is_still_ = sleep && stillness_.seconds() >= sleep->seconds;
   }
+  /// Long enough to fall asleep, if nothing else kept it awake.
+  bool is_still() const { return is_still_; }
 
   /// It sleeps with what it touches (surface_contacts.h) or, when it is attached, with what it is attached to.
   bool may_fall_asleep(const SleepSettings& sleep) const {
@@ -116,7 +119,7 @@ class SurfaceBody final : public CoupledBody {
   std::vector<Seen> seen_;  // since it fell asleep
   const ContactModel* contact_;
   std::uint32_t number_;
-  bool holds_a_moving_body_ = false;
+  bool holds_a_moving_body_ = false, is_still_ = false;
   bool is_attached_ = false;
   std::optional<std::uint32_t> island_;
 };

@@ -109,7 +109,26 @@ void SurfaceContacts::step(std::span<SurfaceBody* const> bodies, float step) {
     note_touches(bodies);
     note_triggers(bodies, step);
   }
-  obstacles_.apply();
+  find_at_rest(bodies);
+  obstacles_.apply(at_rest_);
+}
+
+/// Rigid bodies that only soft ones at rest are near; of those that no soft one is near, which links may move, all, or none.
+void SurfaceContacts::find_at_rest(std::span<SurfaceBody* const> bodies) {
+  enum : char { kAlone, kAtRest, kDisturbed };
+  near_rigids_.assign(obstacles_.objects().size(), kAlone);
+  bool all_at_rest = true;
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const bool is_restless = !bodies[i]->soft().asleep() && !bodies[i]->is_still();
+    all_at_rest = all_at_rest && !is_restless;
+    for (const std::uint32_t obstacle : in_stage_[i].obstacles) {
+      char& rigid = near_rigids_[obstacles_.obstacles()[obstacle].rigid];
+      rigid = std::max(rigid, static_cast<char>(is_restless ? kDisturbed : kAtRest));
+    }
+  }
+  at_rest_.resize(near_rigids_.size());
+  for (std::size_t r = 0; r < at_rest_.size(); ++r)
+    at_rest_[r] = near_rigids_[r] == kAtRest || (near_rigids_[r] == kAlone && all_at_rest);
 }
 
 void SurfaceContacts::move(std::span<SurfaceBody* const> bodies, float step) {

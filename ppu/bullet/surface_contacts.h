@@ -65,6 +65,7 @@ class SurfaceContacts {
 
   void move(std::span<SurfaceBody* const> bodies, float step);
   void wake_those_in_the_way(std::span<SurfaceBody* const> bodies);
+  void find_at_rest(std::span<SurfaceBody* const> bodies);
   template <typename Is>
   bool any_near(const BodyInStage& body, const Is& is) const;
   Touch& touch_of(const SurfaceBody& body, TouchedKind kind, const btCollisionObject& object);
@@ -78,6 +79,8 @@ class SurfaceContacts {
   BulletLinks links_;
   SurfaceAttachments attachments_{world_};
   Attachments<3> in_step_;
+  std::vector<char> near_rigids_;  // of each rigid body: which soft ones are near
+  std::vector<bool> at_rest_;      // likewise
   ContactStage stage_;
   std::vector<BodyInStage> in_stage_;
   std::vector<const SoftBody<3>*> softs_;  // of the last substep

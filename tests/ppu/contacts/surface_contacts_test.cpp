@@ -317,6 +317,28 @@ TEST(SurfaceContacts, ASleeperNoticesWhatCreeps) {
   }
 }
 
+TEST(SurfaceContacts, ASoftBodyAndTheRigidOneOnItFallAsleepTogetherAndWakeTogether) {
+  for (const float mass : {1.0f, 20.0f}) {
+    ContactWorld w;
+    w.add_floor();
+    w.bodies.let_sleep(SleepSettings{});
+    const SoftBody<3>& body = w.add(cube(0.6f, 0.2f), settings_of(0.2f, 0.8f, 0.4f), {0, 0.3f, 0});
+    btRigidBody& box = w.add(std::make_unique<btBoxShape>(btVector3(0.2f, 0.2f, 0.2f)), mass, {0, 0.9f, 0});
+    w.run(900);
+    EXPECT_TRUE(body.asleep()) << mass;
+    EXPECT_FALSE(box.isActive()) << mass;
+    const btVector3 place = box.getWorldTransform().getOrigin();
+    w.run(300);
+    EXPECT_LT((box.getWorldTransform().getOrigin() - place).length(), 1e-4f);
+    box.activate(true);
+    box.setLinearVelocity({0, 3, 0});
+    w.run(20);
+    EXPECT_GT(box.getWorldTransform().getOrigin().y(), place.y() + 0.2f);
+    w.run(40);
+    EXPECT_FALSE(body.asleep()) << "it falls on it";
+  }
+}
+
 TEST(SurfaceContacts, ASleeperFallsWhenTheBodyBelowIsTakenAway) {
   const std::vector<std::function<void(SoftBody<3>&)>> ways = {
       [](SoftBody<3>& lower) {
