@@ -53,6 +53,16 @@ Vector3f normal_of(const FaceOf<3>& triangle) {
   return (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]);
 }
 
+/// So narrow that which way it looks is rounding, as cuts through bodies leave some. What is beside it has the surface's places, too.
+bool is_sliver(const FaceOf<2>& edge) { return edge[0] == edge[1]; }
+bool is_sliver(const FaceOf<3>& triangle) {
+  constexpr float kNarrow = 1e-4f;  // a height, of the longest side
+  float longest = 0;
+  for (std::size_t i = 0; i < 3; ++i)
+    longest = std::max(longest, (triangle[(i + 1) % 3] - triangle[i]).squaredNorm());
+  return normal_of(triangle).norm() <= kNarrow * longest;
+}
+
 /// In proportion to the volume between the origin and a face; negative where it is seen from behind.
 float volume_below(const FaceOf<2>& edge) { return cross(edge[0], edge[1]); }
 float volume_below(const FaceOf<3>& triangle) { return triangle[0].dot(triangle[1].cross(triangle[2])); }
@@ -128,15 +138,21 @@ requires(kDimension == 2) SurfaceQuery<kDimension>::SurfaceQuery(const SoftBody<
     : SurfaceQuery(faces_of(body, drawn)) {}
 
 template <int kDimension>
-SurfaceQuery<kDimension>::SurfaceQuery(std::vector<Face> faces) : faces_(std::move(faces)) {
-  SC_ASSERT(!faces_.empty(), "a surface of {} faces", faces_.size());
+SurfaceQuery<kDimension>::SurfaceQuery(std::vector<Face> faces) {
+  SC_ASSERT(!faces.empty(), "a surface of {} faces", faces.size());
   float volume = 0;
-  for (std::uint32_t i = 0; i < faces_.size(); ++i) {
-    for (const Vector& corner : faces_[i])
+  for (std::uint32_t i = 0; i < faces.size(); ++i) {
+    for (const Vector& corner : faces[i])
       if (!corner.allFinite())
         throw std::runtime_error("a soft body's surface has positions that are not finite numbers");
+    if (is_sliver(faces[i])) continue;
+    faces_.push_back(faces[i]);
     numbers_.push_back(i);
-    volume += volume_below(faces_[i]);
+    volume += volume_below(faces[i]);
+  }
+  if (faces_.empty()) {  // of a body that is a line, or a point
+    faces_ = std::move(faces);
+    for (std::uint32_t i = 0; i < faces_.size(); ++i) numbers_.push_back(i);
   }
   if (volume < 0) outwards_ = -1;
   nodes_.resize(1);

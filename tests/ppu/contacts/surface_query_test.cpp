@@ -137,6 +137,42 @@ TEST(SurfaceQuery, OfABodyWithoutAMeshIsTheLatticesBoundary) {
   EXPECT_TRUE(surface.cast_ray(middle + Vector3f(0, 3, 0), middle));
 }
 
+/// Cuts leave triangles so narrow that rounding says which way they look.
+TEST(SurfaceQuery, KnowsHowFarPiecesOfABodyAre) {
+  ContactWorld w({0, 0, 0});
+  SoftBody<3>& body =
+      w.add(make_box({0.6f, 0.6f, 0.6f}, 0.2f), {.cell_size = 0.12f, .fracture = Fracture{}}, {0, 1, 0});
+  std::mt19937 random(5);
+  const auto number = [&](float half) { return std::uniform_real_distribution<float>(-half, half)(random); };
+  const auto vector = [&](float half) { return Vector3f(number(half), number(half), number(half)); };
+  for (int i = 0; i < 4; ++i) w.bodies.cut(body, Cut::plane(Vector3f(0, 1, 0) + vector(0.2f), vector(1)));
+  ASSERT_GT(w.bodies.size(), 1u);
+  for (std::size_t i = 0; i < w.bodies.size(); ++i) {
+    const SoftBody<3>& piece = w.bodies[i];
+    const SurfaceQuery query(piece);
+    const std::vector<Vector3f> drawn = ContactWorld::drawn(piece);
+    const Bounds<3> box = piece.bounds();
+    for (int k = 0; k < 300; ++k) {
+      const Vector3f point = 0.5f * (box.low + box.high) + vector(0.6f);
+      double nearest = 1e9;
+      for (const auto& t : piece.model().mesh().triangles) {
+        const std::array<Eigen::Vector3d, 3> corners = {
+            drawn[t[0]].cast<double>(), drawn[t[1]].cast<double>(), drawn[t[2]].cast<double>()};
+        const double far =
+            (nearest_point<double>(corners, point.cast<double>()) - point.cast<double>()).norm();
+        if (far < nearest) nearest = far;  // not where a triangle is a line
+      }
+      const float distance = query.distance(point);
+      ASSERT_NEAR(std::abs(distance), nearest, 1e-3) << "piece " << i;
+      const bool is_outside =
+          ((point - box.low).array() < -0.01f).any() || ((box.high - point).array() < -0.01f).any();
+      if (is_outside) {
+        ASSERT_GT(distance, 0) << "piece " << i;
+      }
+    }
+  }
+}
+
 TEST(SurfaceQuery, RefusesWhatIsNotFinite) {
   SoftBody<3> body = unit_cube();
   body.set_particle(3, Vector3f::Constant(std::numeric_limits<float>::quiet_NaN()), {0, 0, 0});
