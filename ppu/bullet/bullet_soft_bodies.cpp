@@ -255,8 +255,12 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
   void tell_others(const CoupledBody& leaving) {
     if (!leaving.can_be_touched()) return;
     const Bounds<3> box = leaving.box();
-    for (const auto& body : bodies)
-      if (body.get() != &leaving) body->lose(leaving, box);
+    const std::optional<Bounds<3>> slept = leaving.box_asleep();
+    for (const auto& body : bodies) {
+      if (body.get() == &leaving) continue;
+      body->lose(leaving, box);
+      if (slept) body->lose(leaving, *slept);
+    }
   }
 
   btDiscreteDynamicsWorld& world;

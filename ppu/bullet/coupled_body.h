@@ -62,6 +62,8 @@ class CoupledBody {
 
   /// The box around what can be touched. @pre can_be_touched()
   virtual Bounds<3> box() const = 0;
+  /// Where it has slept, if it does or did until the program moved it.
+  virtual std::optional<Bounds<3>> box_asleep() const { return std::nullopt; }
   virtual float reach() const = 0;  ///< metres, beyond that box, at which other soft bodies touch it
 
   const CollisionFilter& filter() const { return filter_; }

@@ -82,12 +82,8 @@ class SurfaceBody final : public CoupledBody {
 
   bool can_be_touched() const override { return true; }
   bool can_break() const override { return true; }
-  /// Where it is and, moved by the program while it slept, where it has slept.
-  Bounds<3> box() const override {
-    Bounds<3> box = soft_.bounds();
-    if (box_asleep_) box = {box.low.cwiseMin(box_asleep_->low), box.high.cwiseMax(box_asleep_->high)};
-    return box;
-  }
+  Bounds<3> box() const override { return soft_.bounds(); }
+  std::optional<Bounds<3>> box_asleep() const override { return box_asleep_; }
 
   /// While it sleeps: whether the object has gone, however slowly, from where it was when it was seen first, by more than contacts let it
   /// be in the body.
