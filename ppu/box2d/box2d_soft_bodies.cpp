@@ -22,7 +22,7 @@
 #include "ppu/box2d/parting_pieces.h"
 #include "ppu/box2d/rest.h"
 #include "ppu/box2d/surface_contacts_2d.h"
-#include "ppu/numbers/segment_and_box.h"
+#include "ppu/surfaces/way_in_box.h"
 #include "softcell/base/assert.h"
 #include "softcell/base/text.h"
 
@@ -457,7 +457,8 @@ std::optional<SoftRayHit2d> Box2dSoftBodies::cast_ray(const Eigen::Vector2f& fro
     // What is drawn lies beyond the particles by half a cell at most, which may be stretched, but not further than the body.
     const Bounds<2> box = soft.bounds();
     const Eigen::Vector2f size = box.high - box.low;
-    if (!body->filter().lets(filter) || !meets(from, to, Bounds<2>{box.low - size, box.high + size}))
+    if (!body->filter().lets(filter) ||
+        !is_any(way_in_box<2>({box.low - size, box.high + size}, from, to - from)))
       continue;
     const auto hit = impl_->query(soft).cast_ray(from, to);
     if (hit && (!nearest || hit->share < nearest->hit.share)) nearest = SoftRayHit2d{&soft, *hit};

@@ -22,7 +22,7 @@
 #include "ppu/bullet/processor_time.h"
 #include "ppu/bullet/sphere_body.h"
 #include "ppu/bullet/surface_contacts.h"
-#include "ppu/numbers/segment_and_box.h"
+#include "ppu/surfaces/way_in_box.h"
 #include "softcell/base/assert.h"
 
 namespace softcell::ppu {
@@ -407,7 +407,8 @@ std::optional<SoftRayHit> BulletSoftBodies::cast_ray(const Eigen::Vector3f& from
   SC_ASSERT(from.allFinite() && to.allFinite(), "a ray from ({}, {}, {})", from.x(), from.y(), from.z());
   std::optional<SoftRayHit> nearest;
   for (const auto& body : impl_->bodies) {
-    if (!body->filter().lets(filter) || !meets(from, to, body->soft().bounds())) continue;
+    if (!body->filter().lets(filter) || !is_any(way_in_box<3>(body->soft().bounds(), from, to - from)))
+      continue;
     const auto hit = SurfaceQuery(body->soft()).cast_ray(from, to);
     if (hit && (!nearest || hit->share < nearest->hit.share)) nearest = SoftRayHit{&body->soft(), *hit};
   }

@@ -40,8 +40,7 @@ template <int kDimension>
 float entry_of(const Bounds<kDimension>& box, const Eigen::Vector<float, kDimension>& from,
                const Eigen::Vector<float, kDimension>& along) {
   const WayInBox part = way_in_box(box, from, along);
-  // Rounding must not part two boxes that share a side.
-  return part.first <= part.last + 1e-6f ? part.first : kEndless;
+  return is_any(part) ? part.first : kEndless;
 }
 
 /// Out of the body, as long as the face is large, if outlines go around it counter-clockwise.

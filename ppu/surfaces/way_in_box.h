@@ -30,4 +30,7 @@ WayInBox way_in_box(const Bounds<kDimension>& box, const Eigen::Vector<float, kD
   return part;
 }
 
+/// Rounding must not part two boxes that share a side.
+inline bool is_any(const WayInBox& part) { return part.first <= part.last + 1e-6f; }
+
 }  // namespace softcell::ppu

@@ -76,6 +76,8 @@ class FieldReader {
   /// The place of a field, or of the table when it is absent.
   const Place& place(std::string_view key) const;
   const std::string& what() const { return what_; }
+  /// Both, for messages of those who use what was read: "arena.toml:12:1: soft body 3".
+  std::string described() const { return to_string(place()) + ": " + what_; }
   bool has(std::string_view key) const { return find(key) != nullptr; }
 
  private:

@@ -229,7 +229,7 @@ bool read_soft_body(const Value& value, std::size_t index, LatticeFiles& lattice
   SoftBody2dPlacement& body = scene.soft_bodies.emplace_back();
   std::optional<float> own_image_side;
   body.name = "body " + std::to_string(index + 1);
-  body.described = to_string(value.place) + ": " + fields.what();
+  body.described = fields.described();
   fields.text("name", body.name)
       .colour("colour", body.colour)
       .vector<2>("position", body.position, kCoordinate)
@@ -294,7 +294,7 @@ void read_attachments(std::span<const Value> items, Scene2d& scene) {
   for (std::size_t i = 0; i < items.size(); ++i) {
     FieldReader fields(items[i], item_name("attach", i));
     AttachmentPlacement<2>& attachment = scene.attachments.emplace_back();
-    attachment.described = to_string(items[i].place) + ": " + fields.what();
+    attachment.described = fields.described();
     std::string rigid;
     fields.text("rigid", rigid);
     if (fields.has("rigid")) attachment.rigid = find_rigid_body(rigid, fields.place("rigid"), scene);

@@ -160,7 +160,7 @@ bool read_soft_body(const Value& value, std::size_t index, MeshFiles& files, con
   std::optional<Vector3f> cut_colour;
   bool contacts = true;
   body.name = "body " + std::to_string(index + 1);
-  body.described = to_string(value.place) + ": " + fields.what();
+  body.described = fields.described();
   fields.text("name", body.name)
       .colour("colour", body.colour)
       .painted_colour("cut_colour", cut_colour)
@@ -220,7 +220,7 @@ void read_attachments(std::span<const Value> items, std::size_t first_box, Scene
   for (std::size_t i = 0; i < items.size(); ++i) {
     FieldReader fields(items[i], item_name("attach", i));
     AttachmentPlacement<3>& attachment = scene.attachments.emplace_back();
-    attachment.described = to_string(items[i].place) + ": " + fields.what();
+    attachment.described = fields.described();
     std::string rigid;
     int box = 0;
     fields.text("rigid", rigid)
