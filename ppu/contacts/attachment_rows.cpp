@@ -306,7 +306,7 @@ auto AttachmentRows<kDimension>::begin_row(Row& row) -> Vector {
   } else {
     place = row.point = sides_.frame->to_world(row.own);
     if (sides_.rigid == nullptr)
-      row.carried = (sides_.frame->to_world_at_end(row.own) - row.point) / h;
+      row.carried = sides_.frame->velocity_at(row.own, h);
     else
       place += 0.5f * h * h * AttachedRigid<kDimension>::curve(*sides_.rigid, row.point);
   }
@@ -415,6 +415,20 @@ void AttachmentRows<kDimension>::renumber(bool of_b, std::vector<std::uint32_t> 
   SC_ASSERT(numbers.size() == side.particle.size(), "{} new numbers of {} particles", numbers.size(),
             side.particle.size());
   side.particle = std::move(numbers);
+}
+
+template <int kDimension>
+void AttachmentRows<kDimension>::append_held(std::uint32_t a, const AttachmentFrame<kDimension>& frame,
+                                             const Rigid* rigid, float step,
+                                             std::vector<HeldParticle<kDimension>>& held) const {
+  if (settings_.kind != AttachmentKind::kWeld || settings_.compliance > 0) return;
+  if (rigid != nullptr && rigid->inverse_mass > 0) return;
+  for (const Row& row : rows_) {
+    const Vector point = frame.to_world(row.own);
+    const Vector velocity = rigid != nullptr ? AttachedRigid<kDimension>::velocity_at(*rigid, point)
+                                             : frame.velocity_at(row.own, step);
+    held.push_back({a, a_.particle[row.a.first], velocity});
+  }
 }
 
 template <int kDimension>

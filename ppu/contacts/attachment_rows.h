@@ -54,6 +54,17 @@ struct AttachmentFrame {
   Vector to_world(const Vector& own) const { return position + rotation * own; }
   Vector to_world_at_end(const Vector& own) const { return end_position + end_rotation * own; }
   Vector to_own(const Vector& world) const { return rotation.transpose() * (world - position); }
+  /// m/s: of a place in it, in a substep of `step` seconds.
+  Vector velocity_at(const Vector& own, float step) const {
+    return (to_world_at_end(own) - to_world(own)) / step;
+  }
+};
+
+/// A particle of a body whose velocity an attachment decides: what presses on it meets what holds it.
+template <int kDimension>
+struct HeldParticle {
+  std::uint32_t body = 0, particle = 0;
+  Eigen::Vector<float, kDimension> velocity = Eigen::Vector<float, kDimension>::Zero();  ///< m/s
 };
 
 /// The particles of a patch as they are when it is attached.
@@ -98,6 +109,10 @@ class AttachmentRows {
     const AttachmentFrame<kDimension>* frame = nullptr;
     Rigid* rigid = nullptr;
   };
+  /// Appends the particles of a that a weld without compliance holds at what impulses do not move; of other attachments none.
+  /// @param rigid  null: only the program moves the frame
+  void append_held(std::uint32_t a, const AttachmentFrame<kDimension>& frame, const Rigid* rigid, float step,
+                   std::vector<HeldParticle<kDimension>>& held) const;
   /// Begins a substep. The sides stay where they are until finish().
   void begin(const Sides& sides, float step);
   /// Whether one iteration finds what more would find, as long as nobody else changes the sides.

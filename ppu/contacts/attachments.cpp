@@ -28,6 +28,17 @@ bool Attachments<kDimension>::parts(std::uint32_t a, std::uint32_t b) const {
 }
 
 template <int kDimension>
+void Attachments<kDimension>::append_held(std::span<const Rigid> rigids, float step,
+                                          std::vector<HeldParticle<kDimension>>& held) {
+  constexpr std::uint32_t kNone = AttachmentInStep<kDimension>::kNone;
+  for (const AttachmentInStep<kDimension>& attachment : all_) {
+    if (attachment.b != kNone) continue;
+    const Rigid* const rigid = attachment.rigid != kNone ? &rigids[attachment.rigid] : nullptr;
+    attachment.rows->append_held(attachment.a, attachment.frame, rigid, step, held);
+  }
+}
+
+template <int kDimension>
 void Attachments<kDimension>::begin(std::span<const AttachedBody<kDimension>> bodies, std::span<Rigid> rigids,
                                     float step) {
   constexpr std::uint32_t kNone = AttachmentInStep<kDimension>::kNone;

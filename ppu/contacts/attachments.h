@@ -40,6 +40,9 @@ class AttachmentSolver {
   virtual bool empty() const = 0;
   /// Whether two soft bodies do not touch each other because they are attached. @pre a < b
   virtual bool parts(std::uint32_t a, std::uint32_t b) const = 0;
+  /// Appends the particles that are held where impulses move nothing. Before begin().
+  virtual void append_held(std::span<const Rigid> rigids, float step,
+                           std::vector<HeldParticle<kDimension>>& held) = 0;
   /// @param bodies, rigids  stay where they are until finish()
   virtual void begin(std::span<const AttachedBody<kDimension>> bodies, std::span<Rigid> rigids,
                      float step) = 0;
@@ -70,6 +73,8 @@ class Attachments final : public AttachmentSolver<kDimension> {
 
   bool empty() const override { return all_.empty(); }
   bool parts(std::uint32_t a, std::uint32_t b) const override;
+  void append_held(std::span<const Rigid> rigids, float step,
+                   std::vector<HeldParticle<kDimension>>& held) override;
   void begin(std::span<const AttachedBody<kDimension>> bodies, std::span<Rigid> rigids, float step) override;
   void iterate(int iterations) override;
   void finish() override;

@@ -193,4 +193,30 @@ void stiffen(ContactBody& body, std::uint32_t cell, float share) {
   }
 }
 
+void ContactBody::hold(std::uint32_t particle, const Eigen::Vector3f& velocity) {
+  SC_ASSERT(!asleep && particle < positions.size(), "particle {} of {} is held, of a body that sleeps or not",
+            particle, positions.size());
+  if (inverse_masses_if_held.empty())
+    inverse_masses_if_held.assign(inverse_masses.begin(), inverse_masses.end());
+  held_velocities.resize(positions.size());
+  inverse_masses_if_held[particle] = 0;
+  held_velocities[particle] = velocity;
+}
+
+bool ContactBody::holds(const Anchor& anchor) const {
+  if (inverse_masses_if_held.empty()) return false;
+  for (std::size_t k = 0; k < 8; ++k)
+    if (anchor.share[k] != 0 && holds(anchor.particle[k])) return true;
+  return false;
+}
+
+Eigen::Vector3f ContactBody::velocity_if_held(const Anchor& anchor) const {
+  Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+  for (std::size_t k = 0; k < 8; ++k) {
+    const std::uint32_t particle = anchor.particle[k];
+    sum += anchor.share[k] * (holds(particle) ? held_velocities : velocities)[particle];
+  }
+  return sum;
+}
+
 }  // namespace softcell::ppu

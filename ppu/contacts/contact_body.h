@@ -132,11 +132,23 @@ struct ContactBody {
   Eigen::Vector3f travel{0, 0, 0};             ///< metres, from positions to ends, in the mean
   bool asleep = false;                         ///< nothing moves it
   std::span<const float> inverse_masses;       ///< 1/kg; 0 of a body that sleeps
+  /// As above, and 0 of particles that an attachment holds: a rigid body that presses on them meets what holds them. Empty: none is held.
+  std::vector<float> inverse_masses_if_held;
+  std::vector<Eigen::Vector3f> held_velocities;  ///< m/s, of each particle that is held
   float friction = 0.5f;
   float restitution = 0;
 
   float spacing() const { return model->lattice().spacing; }
   const Lattice<3>& lattice() const { return model->lattice(); }
+  /// From now on, until the substep's end. @pre the body is awake
+  void hold(std::uint32_t particle, const Eigen::Vector3f& velocity);
+  bool holds(std::uint32_t particle) const {
+    return !inverse_masses_if_held.empty() && inverse_masses_if_held[particle] == 0;
+  }
+  /// Whether a held particle has a share in it.
+  bool holds(const Anchor& anchor) const;
+  /// m/s, as one that presses on held particles feels it.
+  Eigen::Vector3f velocity_if_held(const Anchor& anchor) const;
 };
 
 }  // namespace softcell::ppu

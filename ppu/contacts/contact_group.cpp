@@ -16,13 +16,15 @@ using Eigen::Vector3f;
 constexpr float kSlop = 0.01f, kPushShare = 0.1f, kMostPush = 0.02f;
 
 float mobility(const SoftContact& contact, const ContactSides& sides, const Vector3f& direction) {
-  const float own = contact.a.mobility(sides.a->inverse_masses);
+  const float own =
+      contact.a.mobility(contact.on_held ? sides.a->inverse_masses_if_held : sides.a->inverse_masses);
   if (sides.b != nullptr) return own + contact.b.mobility(sides.b->inverse_masses);
   return own + sides.rigids[contact.rigid].mobility(contact.point, direction);
 }
 
 Vector3f relative_velocity(const SoftContact& contact, const ContactSides& sides) {
-  const Vector3f a = contact.a.of(sides.a->velocities);
+  const Vector3f a =
+      contact.on_held ? sides.a->velocity_if_held(contact.a) : contact.a.of(sides.a->velocities);
   if (sides.b != nullptr) return a - contact.b.of(sides.b->velocities);
   return a - sides.rigids[contact.rigid].velocity_at(contact.point);
 }

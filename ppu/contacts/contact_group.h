@@ -28,6 +28,7 @@ struct SoftContact {
   float friction = 0;
   /// Metres that body a may go on as a whole before something sharp crushes its cells (sharp_contacts.h); kNoLimit: it is not sharp.
   float room = kNoLimit;
+  bool on_held = false;       ///< with a rigid body that moves: body a's particles there are held
   bool holds_pushes = false;  ///< a body has pushes of its own, which must not lead into the other one
 
   // What solving changes.

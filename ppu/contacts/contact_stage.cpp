@@ -88,6 +88,7 @@ void ContactStage::take_over(std::span<const BodyInStage> bodies, float step) {
     body.restitution = soft.restitution;
     body.box = soft.box;
     body.asleep = soft.asleep;
+    body.inverse_masses_if_held.clear();
     body.inverse_masses = body.asleep ? std::span<const float>(nothing_moves_).first(body.ends.size())
                                       : body.model->inverse_masses;
     is_crushed_[i] = false;
@@ -114,6 +115,15 @@ void ContactStage::take_over(std::span<const BodyInStage> bodies, float step) {
     check_finite(body);
     cells_[i].begin(body);
   }
+}
+
+/// Particles that rigid bodies cannot push away, however heavy these are: each round they would give up no more than the particles weigh.
+void ContactStage::find_held(std::span<const ContactRigid> rigids, float step) {
+  if (!has_attachments()) return;
+  held_.clear();
+  attachments->append_held(rigids, step, held_);
+  for (const HeldParticle<3>& held : held_)
+    if (!bodies_[held.body].asleep) bodies_[held.body].hold(held.particle, held.velocity);
 }
 
 bool ContactStage::may_touch(std::uint32_t a, std::uint32_t b, std::span<const BodyInStage> bodies) const {
@@ -145,7 +155,7 @@ ContactStage::Group& ContactStage::next_group(std::uint32_t a, std::uint32_t b, 
   if (group_count_ == groups_.size()) groups_.emplace_back();
   Group& group = groups_[group_count_++];
   group.a = a, group.b = b, group.with_rigid = with_rigid;
-  group.by_worker = group.heavy = group.alternates = group.fast = group.sharp = false;
+  group.by_worker = group.heavy = group.alternates = group.fast = group.sharp = group.on_held = false;
   group.contacts.clear();
   group.solved = {};
   group.rigid_set = RigidSets::kNone;
@@ -208,6 +218,10 @@ void ContactStage::find_with_rigid(std::span<const BodyInStage> bodies, std::spa
       find_contacts(bodies_[a], cells_[a], obstacles, bodies[a].obstacles, obstacle, rigids, step,
                     group.contacts);
     group.sharp = sharp_contacts_.keep(group.contacts, bodies_[a]);
+    for (SoftContact& contact : group.contacts) {
+      contact.on_held = rigids[contact.rigid].inverse_mass > 0 && bodies_[a].holds(contact.a);
+      group.on_held = group.on_held || contact.on_held;
+    }
     if (group.contacts.empty()) --group_count_;
   }
 }
@@ -221,7 +235,7 @@ void ContactStage::put_in_order() {
 
 /// Whether the worker may solve what this thread has found.
 bool ContactStage::can_hand_to_worker(const Group& group) const {
-  return !group.by_worker && group.contacts.size() <= ContactWorker::kMostContacts &&
+  return !group.by_worker && !group.on_held && group.contacts.size() <= ContactWorker::kMostContacts &&
          worker->holds(group.a) && worker->holds(group.b);
 }
 
@@ -453,6 +467,7 @@ void ContactStage::stiffen_touched_cells() {
 void ContactStage::step(std::span<const BodyInStage> bodies, std::span<const Obstacle> obstacles,
                         std::span<ContactRigid> rigids, const RigidLinks& links, float step) {
   take_over(bodies, step);
+  find_held(rigids, step);
   group_count_ = 0;
   bounces_.clear();
   find_pairs(bodies);

@@ -109,9 +109,10 @@ class ContactStage {
     bool by_worker = false;  ///< he solves them: they are in `solved`
     bool heavy = false;      ///< with a rigid body that outweighs a
     bool alternates =
-        false;           ///< with others that touch the same light rigid body: one iteration each in turn
-    bool fast = false;   ///< two bodies that may pass each other in the substep
-    bool sharp = false;  ///< some of its contacts limit how far a goes on as a whole
+        false;             ///< with others that touch the same light rigid body: one iteration each in turn
+    bool fast = false;     ///< two bodies that may pass each other in the substep
+    bool sharp = false;    ///< some of its contacts limit how far a goes on as a whole
+    bool on_held = false;  ///< some of its contacts are SoftContact::on_held, which the worker does not know
     std::vector<SoftContact> contacts;  ///< found here
     FoundContacts solved;
     /// Of those that the worker moves in it; kNone: nothing moves the rigid bodies.
@@ -132,6 +133,7 @@ class ContactStage {
   static constexpr std::size_t kManyAttachments = 16;
 
   void take_over(std::span<const BodyInStage> bodies, float step);
+  void find_held(std::span<const ContactRigid> rigids, float step);
   void find_pairs(std::span<const BodyInStage> bodies);
   bool may_touch(std::uint32_t a, std::uint32_t b, std::span<const BodyInStage> bodies) const;
   void hold_by_own_cells(Group& group);
@@ -221,6 +223,7 @@ class ContactStage {
   std::vector<TouchedRigid> touched_rigids_;
   std::vector<Group*> of_set_;  // of rigid bodies
   LostSpin lost_spin_;
+  std::vector<HeldParticle<3>> held_;
   std::vector<AttachedBody<3>> attached_;  // bodies_, as attachments see them
   SolveStages stages_;
 };

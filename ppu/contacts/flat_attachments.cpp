@@ -48,6 +48,26 @@ void FlatAttachments::begin(InPlane& plane, const AttachedBody<3>& body) {
   }
 }
 
+void FlatAttachments::place_rigids(std::span<const ContactRigid> rigids) {
+  rigids_.clear();
+  for (const ContactRigid& rigid : rigids)
+    rigids_.push_back({.centre = rigid.centre.head<2>(),
+                       .velocity = rigid.velocity.head<2>(),
+                       .spin = rigid.spin.z(),
+                       .inverse_mass = rigid.inverse_mass,
+                       .inverse_inertia = rigid.inverse_inertia(2, 2)});
+}
+
+void FlatAttachments::append_held(std::span<const ContactRigid> rigids, float step,
+                                  std::vector<HeldParticle<3>>& held) {
+  place_rigids(rigids);
+  held_.clear();
+  in_plane_.append_held(rigids_, step, held_);
+  for (const HeldParticle<2>& column : held_)
+    for (const std::uint32_t particle : {2 * column.particle, 2 * column.particle + 1})
+      held.push_back({column.body, particle, {column.velocity.x(), column.velocity.y(), 0}});
+}
+
 void FlatAttachments::begin(std::span<const AttachedBody<3>> bodies, std::span<ContactRigid> rigids,
                             float step) {
   lifted_ = bodies;
@@ -60,11 +80,7 @@ void FlatAttachments::begin(std::span<const AttachedBody<3>> bodies, std::span<C
     bodies_[i] = {plane.positions,      plane.velocities,  plane.pushes,
                   plane.inverse_masses, bodies[i].spacing, bodies[i].asleep};
   }
-  rigids_.clear();
-  for (const ContactRigid& rigid : rigids)
-    rigids_.push_back({.centre = rigid.centre.head<2>(),
-                       .inverse_mass = rigid.inverse_mass,
-                       .inverse_inertia = rigid.inverse_inertia(2, 2)});
+  place_rigids(rigids);
   lower();
   in_plane_.begin(bodies_, rigids_, step);
 }

@@ -21,6 +21,8 @@ class FlatAttachments final : public AttachmentSolver<3> {
 
   bool empty() const override { return in_plane_.empty(); }
   bool parts(std::uint32_t a, std::uint32_t b) const override { return in_plane_.parts(a, b); }
+  void append_held(std::span<const ContactRigid> rigids, float step,
+                   std::vector<HeldParticle<3>>& held) override;
   void begin(std::span<const AttachedBody<3>> bodies, std::span<ContactRigid> rigids, float step) override;
   void iterate(int iterations) override;
   void finish() override;
@@ -44,6 +46,7 @@ class FlatAttachments final : public AttachmentSolver<3> {
 
   void hold(std::uint32_t body, std::span<const std::uint32_t> particles);
   static void begin(InPlane& plane, const AttachedBody<3>& body);
+  void place_rigids(std::span<const ContactRigid> rigids);
   void lower();
   void raise() const;
 
@@ -51,6 +54,7 @@ class FlatAttachments final : public AttachmentSolver<3> {
   std::vector<InPlane> planes_;  // of each body of the stage, or of fewer
   std::vector<AttachedBody<2>> bodies_;
   std::vector<AttachedRigid2d> rigids_;
+  std::vector<HeldParticle<2>> held_;
   std::span<const AttachedBody<3>> lifted_;  // of the stage
   std::span<ContactRigid> lifted_rigids_;
 };

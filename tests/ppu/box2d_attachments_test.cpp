@@ -237,6 +237,26 @@ TEST_P(Box2dAttachments, FollowAPointThatTheProgramMoves) {
   EXPECT_LT(std::abs(std::atan2(across.y(), across.x()) - std::atan2(1.0f, 1.0f) - 1.5707963f), 0.05f);
 }
 
+/// What presses on particles that are held meets what holds them, however light they are.
+TEST(Box2dAttachmentsOfDrawnEdges, WhatIsWeldedAsAWholeCarriesARigidBody) {
+  for (const float mass : {2.0f, 300.0f}) {
+    World2d w(9.81f, ContactMethod::kSurface);
+    const SoftBody<2>& table = w.soft.add(rectangle_model({6, 3}, firm()), {0, 1});
+    const AttachmentId weld = w.soft.attach(
+        table, Patch<2>::of_particles(particles_where(table, [](const Vector2f&) { return true; })));
+    const b2Body* const load = w.add_box({0, 1.26f}, {0.1f, 0.1f}, mass / 0.04f);
+    w.run(2);
+    const float settled = load->GetPosition().y;
+    EXPECT_NEAR(settled, 1.25f, 0.1f * kCellOf2d) << mass;
+    w.run(4);
+    EXPECT_NEAR(load->GetPosition().y, settled, 0.01f * kCellOf2d) << mass;
+    const auto state = w.soft.attachment(weld);
+    ASSERT_TRUE(state);
+    const float weight = 9.81f * (mass + mass_of_body(table));
+    EXPECT_NEAR(state->force.y(), weight, 0.03f * weight) << mass;
+  }
+}
+
 /// Two that are welded overlap where they lie, and do not push each other apart; when they are free they do.
 TEST_P(Box2dAttachments, WhatIsWeldedDoesNotTouchEachOther) {
   World2d w(0, GetParam());

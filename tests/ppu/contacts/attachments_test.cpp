@@ -304,6 +304,75 @@ TEST(Attachments, AHungBodyCarriesOneThatStandsOnIt) {
   }
 }
 
+/// A block whose particles are all welded, as a table.
+struct Table {
+  SoftBody<3>& body;
+  AttachmentId weld;
+  explicit Table(AttachedWorld& w, const AttachmentSettings<3>& settings = {})
+      : body(w.add(block({0.6f, 0.3f, 0.6f}), stiff(), {0, 1, 0})),
+        weld(w.bodies.attach(
+            body, Patch<3>::of_particles(particles_where(body, [](const Vector3f&) { return true; })),
+            settings)) {}
+};
+
+std::unique_ptr<btCollisionShape> crate() {
+  return std::make_unique<btBoxShape>(btVector3(0.1f, 0.1f, 0.1f));
+}
+float height_of(const btRigidBody& body) { return body.getWorldTransform().getOrigin().y(); }
+
+/// What presses on particles that are held meets what holds them, however light they are.
+TEST_P(SolvedBy, WhatIsWeldedAsAWholeCarriesARigidBody) {
+  for (const float mass : {2.0f, 100.0f}) {
+    SCOPED_TRACE(mass);
+    AttachedWorld w(GetParam());
+    const Table table(w);
+    const btRigidBody& load = w.add(crate(), mass, {0, 1.26f, 0});
+    w.run(120);
+    const float settled = height_of(load);
+    EXPECT_NEAR(settled, 1.25f, 0.05f * kCell);
+    w.run(240);
+    EXPECT_NEAR(height_of(load), settled, 0.01f * kCell);
+    const auto state = w.bodies.attachment(table.weld);
+    ASSERT_TRUE(state);
+    const float weight = 9.81f * (mass + table.body.model().mass());
+    EXPECT_NEAR(state->force.y(), weight, 0.02f * weight);
+  }
+}
+
+TEST_P(SolvedBy, WhatIsWeldedAsAWholeLiftsARigidBody) {
+  AttachedWorld w(GetParam());
+  const Table table(w);
+  const btRigidBody& load = w.add(crate(), 50, {0, 1.25f, 0});
+  w.run(30);
+  const float up = 0.5f;  // m/s
+  w.bodies.move_attachment(table.weld, Vector3f(0, 1 + 2 * up, 0), Eigen::Quaternionf::Identity(), 2);
+  w.run(120);
+  EXPECT_NEAR(height_of(load), 1.25f + 2 * up, 0.05f * kCell);
+}
+
+TEST_P(SolvedBy, WhatIsWeldedAsAWholeStopsWhatFallsOnIt) {
+  AttachedWorld w(GetParam());
+  const Table table(w);
+  const btRigidBody& load = w.add(crate(), 100, {0, 2.25f, 0});
+  float lowest = 10;
+  for (int frame = 0; frame < 120; ++frame) {
+    w.run(1);
+    lowest = std::min(lowest, height_of(load));
+  }
+  EXPECT_GT(lowest, 1.25f - 0.1f * kCell);
+}
+
+TEST_P(SolvedBy, WhatIsWeldedAsAWholeBreaksOffUnderWhatItCannotCarry) {
+  for (const bool holds : {true, false}) {
+    AttachedWorld w(GetParam());
+    const Table table(w, {.break_force = holds ? 4000.0f : 500.0f});
+    const btRigidBody& load = w.add(crate(), 100, {0, 1.2505f, 0});
+    w.run(60);
+    EXPECT_EQ(height_of(load) > 1.2f, holds) << height_of(load);
+    EXPECT_EQ(w.bodies.attachment(table.weld).has_value(), holds);
+  }
+}
+
 TEST_P(SolvedBy, ARigidBodyFeelsWhatHangsOnIt) {
   AttachedWorld w(GetParam(), {0, 0, 0});
   btRigidBody& box = w.add(std::make_unique<btBoxShape>(btVector3(0.2f, 0.2f, 0.2f)), 5, {0, 0, 0});
