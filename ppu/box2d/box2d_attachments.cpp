@@ -225,8 +225,8 @@ std::uint32_t Box2dAttachments::number_of(b2Body& rigid, float step) {
   added.velocity = to_eigen(rigid.GetLinearVelocity());
   added.spin = rigid.GetAngularVelocity();
   if (rigid.GetType() == b2_dynamicBody) {
-    added.velocity += step * rigid.GetGravityScale() * to_eigen(world_.GetGravity());
-    added.inverse_mass = 1 / rigid.GetMass();
+    added.velocity += to_eigen(fall_of(rigid, world_.GetGravity(), step));
+    added.inverse_mass = inverse_mass_of(rigid);
     added.inverse_inertia = inverse_inertia_of(rigid);
   }
   rigid_bodies_.push_back(&rigid);
@@ -238,8 +238,7 @@ void Box2dAttachments::move_rigids(float step) const {
   for (std::size_t i = 0; i < rigids_.size(); ++i) {
     b2Body& rigid = *rigid_bodies_[i];
     if (rigid.GetType() != b2_dynamicBody) continue;
-    rigid.SetLinearVelocity(
-        to_box2d(rigids_[i].velocity - step * rigid.GetGravityScale() * to_eigen(world_.GetGravity())));
+    rigid.SetLinearVelocity(to_box2d(rigids_[i].velocity) - fall_of(rigid, world_.GetGravity(), step));
     rigid.SetAngularVelocity(rigids_[i].spin);
   }
 }

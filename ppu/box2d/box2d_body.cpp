@@ -14,6 +14,17 @@ bool has_body(const b2World& world, const b2Body* body) {
   return false;
 }
 
+float inverse_mass_of(const b2Body& body) {
+  SC_ASSERT(body.GetType() == b2_dynamicBody, "the mass of a body of type {}",
+            static_cast<int>(body.GetType()));
+  return body.GetMass() > 0 ? 1 / body.GetMass() : 0;
+}
+
+b2Vec2 fall_of(const b2Body& body, const b2Vec2& gravity, float step) {
+  const bool falls = body.GetType() == b2_dynamicBody && body.GetMass() > 0;
+  return falls ? step * body.GetGravityScale() * gravity : b2Vec2_zero;
+}
+
 float inverse_inertia_of(const b2Body& body) {
   SC_ASSERT(body.GetType() == b2_dynamicBody, "the inertia of a body of type {}",
             static_cast<int>(body.GetType()));

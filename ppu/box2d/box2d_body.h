@@ -86,6 +86,10 @@ class Box2dBody {
 
 /// Whether a world has a body, which may have been destroyed: it is not looked at.
 bool has_body(const b2World& world, const b2Body* body);
+/// 1/kg; 0: it has no fixture with a density, so that impulses do not move it. @pre it is dynamic
+float inverse_mass_of(const b2Body& body);
+/// m/s: what gravity (m/s^2) gives it in a step of `step` seconds. Box2D lets nothing fall that has no mass.
+b2Vec2 fall_of(const b2Body& body, const b2Vec2& gravity, float step);
 /// 1/(kg m^2), about its centre of mass; 0: nothing turns it. @pre it is dynamic
 float inverse_inertia_of(const b2Body& body);
 

@@ -105,9 +105,8 @@ void Box2dObstacles::begin(b2World& world, float step, float layer) {
 
 /// What it would be without contacts: Box2D adds gravity later in its step.
 b2Vec2 Box2dObstacles::velocity_of(const b2Body& body) const {
-  const bool falls = body.GetType() == b2_dynamicBody && body.IsAwake();
-  return falls ? body.GetLinearVelocity() + step_ * body.GetGravityScale() * world_->GetGravity()
-               : body.GetLinearVelocity();
+  const b2Vec2 velocity = body.GetLinearVelocity();
+  return body.IsAwake() ? velocity + fall_of(body, world_->GetGravity(), step_) : velocity;
 }
 
 /// Box2D has a box around where a fixture has been: of what moves, one around where it comes.
@@ -205,7 +204,7 @@ std::uint32_t Box2dObstacles::rigid_of(b2Body& body) {
   for (const b2Fixture* fixture = body.GetFixtureList(); fixture != nullptr; fixture = fixture->GetNext())
     rigid.restitution = std::max(rigid.restitution, fixture->GetRestitution());
   if (body.GetType() == b2_dynamicBody) {
-    rigid.inverse_mass = 1 / body.GetMass();
+    rigid.inverse_mass = inverse_mass_of(body);
     rigid.inverse_inertia(2, 2) = inverse_inertia_of(body);
   }
   rigids_.push_back(rigid);
@@ -304,6 +303,7 @@ void Box2dObstacles::add_face(const b2Fixture& fixture, int face, Obstacle& obst
   const Ends ends = face_of(static_cast<const b2PolygonShape&>(*fixture.GetShape()), face);
   add_wall(ends.from, ends.to, obstacle, shape);
   obstacle.faces_bodies = true;
+  obstacle.part = number(fixture);
 }
 
 /// @param edges  of one fixture

@@ -232,6 +232,7 @@ struct Box2dSoftBodies::Impl {
     if (body.soft().asleep()) body.wake();
     const Eigen::Vector2d centre = body.soft().precise_centre_of_mass();
     for (BodyPiece<2>& piece : planned) piece.body.inherit_state(body.soft(), piece.particle_of, centre);
+    const std::shared_ptr<const SoftBodyModel<2>> whole = body.soft().shared_model();
     std::vector<Box2dBody*> pieces{&body};
     for (std::size_t i = 1; i < planned.size(); ++i) {
       pieces.push_back(&add(std::move(planned[i].body)));
@@ -245,13 +246,15 @@ struct Box2dSoftBodies::Impl {
     event.faces = faces;
     event.vanished = made.planned.vanished.size();
     std::vector<Box2dAttachments::Piece> with_attachments;
+    std::vector<SurfaceContacts2d::Piece> that_touch;
     for (std::size_t i = 0; i < pieces.size(); ++i) {
       parting.keep(kept, *pieces[i], planned[i].particle_of);
       with_attachments.push_back({pieces[i], planned[i].particle_of});
+      that_touch.push_back({pieces[i], planned[i].particle_of});
       if (i > 0) event.pieces.push_back(&pieces[i]->soft());
     }
     if (surfaces) {
-      surfaces->forget(body);
+      surfaces->follow_pieces(body, *whole, that_touch);
       surfaces->forget_pieces(bodies);
     } else {
       parting.add(pieces);

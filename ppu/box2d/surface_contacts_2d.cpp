@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "ppu/contacts/overlap.h"
+#include "ppu/contacts/piece_sides.h"
 #include "ppu/numbers/box_around.h"
 #include "softcell/base/assert.h"
 
@@ -96,9 +97,9 @@ void SurfaceContacts2d::begin(Bodies bodies, const Box2dAttachments& attachments
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     Box2dBody& body = *bodies[i];
     const SoftBody<2>& soft = body.soft();
-    const auto [there, is_new] = kept_.try_emplace(&body);
-    Kept& kept = there->second;
-    if (is_new) kept.number = next_number_++;
+    Kept& kept = kept_[&body];
+    if (kept.model == nullptr) kept.number = next_number_++;
+    if (soft.position(0) != kept.place_of_sides) kept.sides = {};  // the program has moved it
     kept.model = &model_of(soft.shared_model());
     lift(body, kept, step);
     softs_.push_back(&soft);
@@ -109,7 +110,8 @@ void SurfaceContacts2d::begin(Bodies bodies, const Box2dAttachments& attachments
                 .friction = std::sqrt(soft.settings().friction),
                 .restitution = soft.settings().restitution,
                 .box = box_of_step(kept.positions, kept.velocities, step),
-                .obstacles = std::move(in_stage.obstacles)};
+                .obstacles = std::move(in_stage.obstacles),
+                .sides = &kept.sides};
     in_stage.obstacles.clear();
     in_stage.filter = body.filter();
     obstacles_.add_near(in_stage.box, soft.centre_of_mass(), in_stage.filter, in_stage.obstacles);
@@ -217,6 +219,7 @@ void SurfaceContacts2d::move(Bodies bodies, float step) {
       const Vector2f push = FlatLayer::lower(stage_.pushes(i), p);
       soft.set_particle(p, soft.position(p) + step * (velocity + push), velocity);
     }
+    kept_.at(bodies[i].get()).place_of_sides = soft.position(0);
   }
 }
 
@@ -324,6 +327,21 @@ void SurfaceContacts2d::forget(const Box2dBody& body) {
     if (std::ranges::find(kept.lies_on, &body) != kept.lies_on.end()) kept.lost_support = true;
   log_.forget(body.soft());
   stage_.forget_who_presses();
+}
+
+void SurfaceContacts2d::follow_pieces(const Box2dBody& body, const SoftBodyModel<2>& whole,
+                                      std::span<const Piece> pieces) {
+  const auto there = kept_.find(&body);
+  const Kept before = there != kept_.end() ? there->second : Kept();
+  forget(body);
+  if (before.model == nullptr || before.model->model.get() != &whole) return;  // the whole has never touched
+  for (const Piece& piece : pieces) {
+    Kept& kept = kept_[piece.body];
+    const SoftBody<2>& soft = piece.body->soft();
+    kept.place_of_sides = soft.position(0);
+    kept.sides = sides_of_piece(before.sides, before.model->contact, before.positions, whole.lattice(),
+                                soft.model().lattice(), piece.particle_of);
+  }
 }
 
 void SurfaceContacts2d::forget_pieces(Bodies bodies) {

@@ -75,6 +75,13 @@ class SurfaceContacts2d {
   void let_lie(const Box2dBody& body);
   /// A body goes: those that lie on it wake.
   void forget(const Box2dBody& body);
+  /// A piece, and of each of its particles which one of the whole it was.
+  struct Piece {
+    const Box2dBody* body;
+    std::span<const std::uint32_t> particle_of;
+  };
+  /// A body has become the first of these pieces. @param whole  the model that it had
+  void follow_pieces(const Box2dBody& body, const SoftBodyModel<2>& whole, std::span<const Piece> pieces);
   /// Frees what is kept of pieces that none of these bodies is any longer. @pre between steps
   void forget_pieces(Bodies bodies);
 
@@ -86,8 +93,10 @@ class SurfaceContacts2d {
   };
   /// What is kept of a body.
   struct Kept {
-    std::uint32_t number = 0;  // in the order in which bodies came
-    const Model* model = nullptr;
+    std::uint32_t number = 0;      // in the order in which bodies came
+    const Model* model = nullptr;  // null: the body is new
+    KnownSides sides;
+    Eigen::Vector2f place_of_sides{0, 0};                // of the first particle, since they are known
     std::vector<Eigen::Vector3f> positions, velocities;  // of its layer, at the step's beginning
     std::vector<Support> supports;                       // while it sleeps
     std::vector<const Box2dBody*> lies_on;               // likewise

@@ -186,6 +186,19 @@ Vector3f velocity_in(float step, const btRigidBody& body) {
   return velocity + step * body.getInvMass() * to_eigen(body.getTotalForce() * body.getLinearFactor());
 }
 
+/// As Bullet's own solver has it: the factors multiply what impulses do along the world's axes, and about them.
+void set_mobility(const btRigidBody& body, ContactRigid& rigid) {
+  const Vector3f linear = to_eigen(body.getLinearFactor()), angular = to_eigen(body.getAngularFactor());
+  if (linear.isZero(0) && angular.isZero(0)) return;  // nothing moves it
+  rigid.inverse_mass = body.getInvMass();
+  rigid.inverse_inertia =
+      angular.asDiagonal() * to_eigen(body.getInvInertiaTensorWorld()) * angular.asDiagonal();
+  if (linear == Vector3f::Ones()) return;
+  rigid.held = HeldMobility{.linear = (rigid.inverse_mass * linear).asDiagonal(),
+                            .coupling = Eigen::Matrix3f::Zero(),
+                            .angular = rigid.inverse_inertia};
+}
+
 /// How far an object goes in a substep, metres.
 struct Way {
   Vector3f along = Vector3f::Zero();
@@ -294,7 +307,7 @@ void BulletObstacles::add_object(btCollisionObject& object, const Bounds<3>& box
   // Of triangles there are others in every box.
   if (!shape.isConcave() && !shape.isCompound())
     obstacle_of_[rigid] = static_cast<std::uint32_t>(obstacles_.size());
-  add_shape(shape, object.getWorldTransform(), rigid, box, indices);
+  add_shape(shape, object.getWorldTransform(), rigid, 0, box, indices);
 }
 
 std::uint32_t BulletObstacles::rigid_of(btCollisionObject& object) {
@@ -315,10 +328,7 @@ std::uint32_t BulletObstacles::rigid_of(btCollisionObject& object) {
   if (const btRigidBody* const body = btRigidBody::upcast(&object)) {
     rigid.velocity = velocity_in(step_, *body);
     rigid.spin = to_eigen(body->getAngularVelocity());
-    if (!body->isStaticOrKinematicObject()) {
-      rigid.inverse_mass = body->getInvMass();
-      rigid.inverse_inertia = to_eigen(body->getInvInertiaTensorWorld());
-    }
+    if (!body->isStaticOrKinematicObject()) set_mobility(*body, rigid);
   }
   rigids_.push_back(rigid);
   before_.push_back(rigid);
@@ -341,21 +351,26 @@ void BulletObstacles::push(const Obstacle& obstacle, std::vector<std::uint32_t>&
 }
 
 void BulletObstacles::add_shape(const btCollisionShape& shape, const btTransform& pose, std::uint32_t rigid,
-                                const Bounds<3>& box, std::vector<std::uint32_t>& indices) {
+                                std::uint32_t part, const Bounds<3>& box,
+                                std::vector<std::uint32_t>& indices) {
   Obstacle obstacle;
   obstacle.rigid = rigid;
+  obstacle.part = part;
   obstacle.position = to_eigen(pose.getOrigin());
   obstacle.rotation = to_eigen(pose.getBasis());
   std::vector<ObstacleEdge>* edges = nullptr;
   switch (shape.getShapeType()) {
     case COMPOUND_SHAPE_PROXYTYPE: {
       const auto& compound = static_cast<const btCompoundShape&>(shape);
-      for (int i = 0; i < compound.getNumChildShapes(); ++i) {
+      const int children = compound.getNumChildShapes();
+      for (int i = 0; i < children; ++i) {
         const btTransform place = pose * compound.getChildTransform(i);
         btVector3 low, high;
         compound.getChildShape(i)->getAabb(place, low, high);
         if (overlap({to_eigen(low), to_eigen(high)}, box))
-          add_shape(*compound.getChildShape(i), place, rigid, box, indices);
+          add_shape(*compound.getChildShape(i), place, rigid,
+                    part * static_cast<std::uint32_t>(children + 1) + static_cast<std::uint32_t>(i + 1), box,
+                    indices);
       }
       return;
     }

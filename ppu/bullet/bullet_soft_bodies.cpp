@@ -22,6 +22,7 @@
 #include "ppu/bullet/processor_time.h"
 #include "ppu/bullet/sphere_body.h"
 #include "ppu/bullet/surface_contacts.h"
+#include "ppu/contacts/piece_sides.h"
 #include "ppu/surfaces/way_in_box.h"
 #include "softcell/base/assert.h"
 
@@ -157,6 +158,15 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
         faces.size());
   }
 
+  /// @param whole  as it was, when the first piece has become its body, but still has its contact model
+  static void follow_sides(const SoftBody<3>& whole, std::span<const SurfaceAttachments::Piece> pieces) {
+    const SurfaceBody& first = *pieces.front().body;
+    const KnownSides sides = first.sides();
+    for (const SurfaceAttachments::Piece& piece : pieces)
+      piece.body->set_sides(sides_of_piece(sides, first.contact(), whole.positions(), whole.model().lattice(),
+                                           piece.body->soft().model().lattice(), piece.particle_of));
+  }
+
   /// @param faces  that broke   @return what stays beside the body itself
   std::vector<SoftBody<3>*> put_pieces(CoupledBody& body, PreparedPieces made, std::size_t faces) {
     std::vector<PreparedPiece>& prepared = made.stay;
@@ -187,6 +197,7 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
     if (!made.vanished.empty()) tell_others(body);
     SoftBody<3> before = body.become(std::move(prepared.front().piece.body));
     if (!with_attachments.empty()) {
+      follow_sides(before, with_attachments);
       follow_model(*with_attachments.front().body);
       surfaces->attachments().follow_pieces(*with_attachments.front().body, with_attachments, made.vanished);
       surfaces->forget_pieces(with_surfaces);

@@ -33,6 +33,7 @@ class SurfaceBody final : public CoupledBody {
   }
 
   void begin_substep() override {
+    if (soft_.position(0) != place_of_sides_) set_sides({});  // the program has moved it
     if (!was_changed()) return;
     rouse();
     see_changes();
@@ -58,6 +59,7 @@ class SurfaceBody final : public CoupledBody {
       seen_.clear();
     }
     if (sleep) count_stillness(step, *sleep);
+    place_of_sides_ = soft_.position(0);
     is_still_ = sleep && stillness_.seconds() >= sleep->seconds;
   }
   /// Long enough to fall asleep, if nothing else kept it awake.
@@ -68,6 +70,14 @@ class SurfaceBody final : public CoupledBody {
     return stillness_.seconds() >= sleep.seconds && !holds_a_moving_body_;
   }
   void fall_asleep_with_others() { fall_asleep_now(); }
+
+  /// On which sides of meshes it is.
+  KnownSides& sides() { return sides_; }
+  const KnownSides& sides() const { return sides_; }
+  void set_sides(const KnownSides& sides) {
+    sides_ = sides;
+    place_of_sides_ = soft_.position(0);
+  }
 
   void set_attached(bool attached) { is_attached_ = attached; }
   bool is_attached() const { return is_attached_; }
@@ -111,6 +121,8 @@ class SurfaceBody final : public CoupledBody {
 
   void fall_asleep() override { box_asleep_ = soft_.bounds(); }
 
+  KnownSides sides_;
+  Eigen::Vector3f place_of_sides_{0, 0, 0};  // of the first particle, since they are known
   std::optional<Bounds<3>> box_asleep_;
   std::vector<Seen> seen_;  // since it fell asleep
   const ContactModel* contact_;

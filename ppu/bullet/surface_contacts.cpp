@@ -74,7 +74,8 @@ void SurfaceContacts::step(std::span<SurfaceBody* const> bodies, float step) {
                 .friction = soft.settings().friction,
                 .restitution = soft.settings().restitution,
                 .box = box_of_step(soft.positions(), soft.velocities(), step),
-                .obstacles = std::move(in_stage.obstacles)};
+                .obstacles = std::move(in_stage.obstacles),
+                .sides = &bodies[i]->sides()};
     in_stage.obstacles.clear();
     obstacles_.add_near(in_stage.box, bodies[i]->filter().group, bodies[i]->filter().mask,
                         in_stage.obstacles);

@@ -28,6 +28,13 @@ struct AttachedRigid<3> {
   using Vector = Eigen::Vector3f;
 
   static Vector velocity_at(const Rigid& rigid, const Vector& point) { return rigid.velocity_at(point); }
+  /// 1/kg. What rigid bodies lie on does not hold those that soft ones are attached to (supports.h): none of them has a coupling.
+  static Eigen::Matrix3f linear_mobility(const Rigid& rigid) {
+    return rigid.held ? rigid.held->linear
+                      : Eigen::Matrix3f(rigid.inverse_mass * Eigen::Matrix3f::Identity());
+  }
+  /// Whether it moves along all axes alike.
+  static bool is_free(const Rigid& rigid) { return !rigid.held; }
   /// m/s^2: how a point that turns with it leaves its straight way.
   static Vector curve(const Rigid& rigid, const Vector& point) {
     return rigid.spin.cross(rigid.spin.cross(Vector(point - rigid.centre)));
@@ -37,11 +44,10 @@ struct AttachedRigid<3> {
     const Vector r = point - rigid.centre;
     Eigen::Matrix3f cross;
     cross << 0, -r.z(), r.y(), r.z(), 0, -r.x(), -r.y(), r.x(), 0;
-    return rigid.inverse_mass * Eigen::Matrix3f::Identity() +
-           cross * rigid.inverse_inertia * cross.transpose();
+    return linear_mobility(rigid) + cross * rigid.inverse_inertia * cross.transpose();
   }
   static void apply(Rigid& rigid, const Vector& point, const Vector& impulse) {
-    rigid.velocity += rigid.inverse_mass * impulse;
+    rigid.velocity += linear_mobility(rigid) * impulse;
     rigid.spin += rigid.inverse_inertia * Vector(point - rigid.centre).cross(impulse);
   }
 
@@ -66,6 +72,7 @@ struct AttachedRigid<2> {
   using Rigid = AttachedRigid2d;
   using Vector = Eigen::Vector2f;
 
+  static bool is_free(const Rigid& /*rigid*/) { return true; }
   static Vector turned(const Vector& r) { return {-r.y(), r.x()}; }
   static Vector velocity_at(const Rigid& rigid, const Vector& point) {
     return rigid.velocity + rigid.spin * turned(point - rigid.centre);

@@ -44,6 +44,7 @@ bool AttachmentRecords<kDimension>::write(bool once, AttachUnit& unit) const {
   const bool is_weld_to_frame = rows_.settings_.kind == AttachmentKind::kWeld && rows_.sides_.b == nullptr;
   const bool moves = rows_.sides_.rigid != nullptr && rows_.sides_.rigid->inverse_mass > 0;
   if (is_weld_to_frame && moves && !rows_.with_rigid_at_once_) return false;  // the rigid body does not turn
+  if (moves && !AttachedRigid<kDimension>::is_free(*rows_.sides_.rigid)) return false;
   spu::AttachLink link{};
   link.rigid = spu::kAttachNoRigid;
   link.once = once;

@@ -443,6 +443,7 @@ void AttachmentRows<kDimension>::begin(const Sides& sides, float step) {
   pushes_ = false;
   const bool is_weld_to_frame = settings_.kind == AttachmentKind::kWeld && sides.b == nullptr;
   with_rigid_at_once_ = is_weld_to_frame && sides.rigid != nullptr && sides.rigid->inverse_mass > 0 &&
+                        AttachedRigid<kDimension>::is_free(*sides.rigid) &&
                         AttachedRigid<kDimension>::can_turn(*sides.rigid);
   is_direct_ =
       is_weld_to_frame && (with_rigid_at_once_ || sides.rigid == nullptr || sides.rigid->inverse_mass == 0);

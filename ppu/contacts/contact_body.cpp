@@ -167,18 +167,23 @@ void stiffen(ContactBody& body, std::uint32_t cell, float share) {
   const std::span<const float> masses = body.model->masses();
   float mass = 0;
   for (const std::uint32_t k : corners) mass += masses[k];
-  // Lengths in cells and masses as shares: the same numbers at every scale.
+  // Lengths in cells and masses as shares: the same numbers at every scale. From the first corner: far from the origin, and of what is fast,
+  // sums would lose digits.
+  const Vector3f first = body.positions[corners[0]], carried = body.velocities[corners[0]];
+  const auto from_first = [&](std::uint32_t k) -> Vector3f {
+    return (body.positions[k] - first) / body.spacing();
+  };
   Vector3f centre = Vector3f::Zero(), velocity = Vector3f::Zero();
   for (const std::uint32_t k : corners) {
-    centre += masses[k] / mass * body.positions[k];
-    velocity += masses[k] / mass * body.velocities[k];
+    centre += masses[k] / mass * from_first(k);
+    velocity += masses[k] / mass * (body.velocities[k] - carried);
   }
-  const auto arm = [&](std::uint32_t k) -> Vector3f { return (body.positions[k] - centre) / body.spacing(); };
+  const auto arm = [&](std::uint32_t k) -> Vector3f { return from_first(k) - centre; };
   Eigen::Matrix3f inertia = Eigen::Matrix3f::Zero();
   Vector3f spin = Vector3f::Zero();
   for (const std::uint32_t k : corners) {
     const Vector3f r = arm(k);
-    spin += masses[k] / mass * r.cross(body.velocities[k]);
+    spin += masses[k] / mass * r.cross(body.velocities[k] - carried);
     inertia += masses[k] / mass * (r.squaredNorm() * Eigen::Matrix3f::Identity() - r * r.transpose());
   }
   // A cell that is pressed to a line cannot turn about it: a little is added to its inertia. What that takes of the turn is given
@@ -189,8 +194,18 @@ void stiffen(ContactBody& body, std::uint32_t cell, float share) {
   const Vector3f omega = inverse * (spin + kLittle * (inverse * spin));
   if (!omega.allFinite()) return;  // torn over 10^6 of its size: the determinant overflows
   for (const std::uint32_t k : corners) {
-    body.velocities[k] += share * (velocity + omega.cross(arm(k)) - body.velocities[k]);
+    body.velocities[k] += share * (velocity + omega.cross(arm(k)) - (body.velocities[k] - carried));
   }
+}
+
+Eigen::Vector3f inner_place(const ContactModel& model, std::uint32_t cell,
+                            std::span<const Eigen::Vector3f> positions) {
+  const CellPlace& inner = model.inner_places[cell];
+  return anchor_in_cell(model.lattice(), inner.cell, inner.xi).of(positions);
+}
+
+std::uint32_t middle_cell(const ContactModel& model) {
+  return static_cast<std::uint32_t>(model.lattice().cells.size() / 2);
 }
 
 void ContactBody::hold(std::uint32_t particle, const Eigen::Vector3f& velocity) {

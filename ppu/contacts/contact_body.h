@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "ppu/contacts/known_sides.h"
 #include "ppu/surfaces/contact_surface.h"
 #include "ppu/surfaces/flat_layer.h"
 #include "ppu/surfaces/inner_places.h"
@@ -111,6 +112,12 @@ class ContactModel {
   std::size_t own_count_ = 0;             // of cells, which are the first ones
 };
 
+/// A place well inside of a body near one of its cells, metres. @param positions  of its particles
+Eigen::Vector3f inner_place(const ContactModel& model, std::uint32_t cell,
+                            std::span<const Eigen::Vector3f> positions);
+/// The cell that stands for the middle of a body.
+std::uint32_t middle_cell(const ContactModel& model);
+
 struct ContactBody;
 
 /// Takes a share of what the cell's corners do against each other off their velocities, momentum and angular
@@ -134,6 +141,7 @@ struct ContactBody {
   std::span<const float> inverse_masses;       ///< 1/kg; 0 of a body that sleeps
   /// As above, and 0 of particles that an attachment holds: a rigid body that presses on them meets what holds them. Empty: none is held.
   std::vector<float> inverse_masses_if_held;
+  KnownSides* sides = nullptr;                   ///< of what it meets; not null where it is near triangles
   std::vector<Eigen::Vector3f> held_velocities;  ///< m/s, of each particle that is held
   float friction = 0.5f;
   float restitution = 0;

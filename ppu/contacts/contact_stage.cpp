@@ -88,6 +88,8 @@ void ContactStage::take_over(std::span<const BodyInStage> bodies, float step) {
     body.restitution = soft.restitution;
     body.box = soft.box;
     body.asleep = soft.asleep;
+    body.sides = soft.sides;
+    body.sides->begin_substep();
     body.inverse_masses_if_held.clear();
     body.inverse_masses = body.asleep ? std::span<const float>(nothing_moves_).first(body.ends.size())
                                       : body.model->inverse_masses;
@@ -314,7 +316,7 @@ void ContactStage::find_presses(const Group& group, std::span<const ContactRigid
   const ContactBody& body = bodies_[group.a];
   const auto for_each_press = [&](const auto& work) {
     for (const SoftContact& contact : group.contacts)
-      if (rigids[contact.rigid].inverse_mass > 0) work(contact);
+      if (rigids[contact.rigid].inverse_mass > 0 && !rigids[contact.rigid].held) work(contact);
   };
   moved_by_all_.resize(std::max(moved_by_all_.size(), body.velocities.size()));
   for_each_press([&](const SoftContact& contact) {

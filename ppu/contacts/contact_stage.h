@@ -38,6 +38,7 @@ struct BodyInStage {
   float restitution = 0;
   Bounds<3> box = {};                         ///< box_of_step()
   std::vector<std::uint32_t> obstacles = {};  ///< indices of those that it may meet
+  KnownSides* sides = nullptr;                ///< of the body, from substep to substep; not null
   bool asleep = false;                        ///< nothing moves it
   CollisionFilter filter = {};                ///< of other soft bodies
 };

@@ -166,12 +166,6 @@ std::optional<Hit> hit_of_entered_face(const Obstacle& obstacle, const Way& way,
   return Hit{there.normal, there.normal.dot(way.to - entry) + allowance};
 }
 
-/// Of a cell, well inside of the body. @param places  the body's particles, at either end of the substep
-Vector3f inner_place(const ContactBody& body, std::uint32_t cell, std::span<const Vector3f> places) {
-  const CellPlace& inner = body.model->inner_places[cell];
-  return anchor_in_cell(body.lattice(), inner.cell, inner.xi).of(places);
-}
-
 class ObstacleContacts {
  public:
   ObstacleContacts(const ContactBody& body, EndCells& cells, std::span<const Obstacle> obstacles,
@@ -283,7 +277,7 @@ class ObstacleContacts {
       const float side = side_of(triangles, near);
       seen += side > clear ? 1 : side < -clear ? -1 : 0;
     }
-    return cells_.side_of(rigid_.number, obstacle_.part, seen);
+    return body_.sides->side_of(rigid_.number, obstacle_.part, seen);
   }
 
   /// Points meet the triangles near their way only.
@@ -291,6 +285,7 @@ class ObstacleContacts {
     // As bounds(), but quicker.
     const float reach =
         come_near(widened(to_world(obstacle_, triangles.boxes().bounds()), obstacle_.rounding));
+    find_origin(triangles);
     find_near_triangles(triangles);
     const float front = front_of_triangles(triangles);
     for (const EndCells::PointAtTriangle& at : cells_.near_triangles)
@@ -330,6 +325,49 @@ class ObstacleContacts {
               all.end());
   }
 
+  /// A small body can be pressed through triangles as a whole, with all that is inside of it: then the place from which it came tells on
+  /// which side of them it belongs.
+  void find_origin(const KnownTriangles& triangles) {
+    const Vector3f now =
+        obstacle_.to_own(inner_place(*body_.model, middle_cell(*body_.model), body_.positions));
+    KnownSides& sides = *body_.sides;
+    std::optional<Vector3f> last = sides.last_place(rigid_.number, obstacle_.part);
+    if (!last && sides.origin()) {
+      last = obstacle_.to_own(sides.origin()->near);
+      if (!is_clear_of(triangles, *last)) last = obstacle_.to_own(sides.origin()->middle);
+    }
+    if (last && is_crossed(triangles, *last, now)) {
+      origin_ = last;
+      return sides.set_place(rigid_.number, obstacle_.part, *last);
+    }
+    sides.set_place(rigid_.number, obstacle_.part, !last || is_clear_of(triangles, now) ? now : *last);
+  }
+
+  /// Whether a place is not just about to be pressed through a triangle.
+  bool is_clear_of(const KnownTriangles& triangles, const Vector3f& place) const {
+    const float margin = kPressedThrough * body_.spacing();
+    bool clear = true;
+    for_each_triangle(triangles, widened({place, place}, margin), [&](std::uint32_t number) {
+      const ObstacleTriangle triangle(obstacle_, triangles, number);
+      clear = clear && !(triangle.has_area() && std::abs(triangle.height(place)) < margin &&
+                         triangle.is_over(place, margin));
+    });
+    return clear;
+  }
+
+  /// Whether a triangle lies between two places.
+  bool is_crossed(const KnownTriangles& triangles, const Vector3f& from, const Vector3f& to) const {
+    bool crossed = false;
+    for_each_triangle(triangles, {from.cwiseMin(to), from.cwiseMax(to)}, [&](std::uint32_t number) {
+      const ObstacleTriangle triangle(obstacle_, triangles, number);
+      if (!triangle.has_area() || !triangle.parts(from, to)) return;
+      const float before = triangle.height(from), after = triangle.height(to);
+      const Vector3f crossing = from + before / (before - after) * (to - from);
+      crossed = crossed || triangle.is_over(crossing, kNear * body_.spacing());
+    });
+    return crossed;
+  }
+
   /// Of each point those near its way; if there are none, or its body is behind one, those that it has been pressed through, at some depth.
   void find_near_triangles(const KnownTriangles& triangles) {
     const float spacing = body_.spacing();
@@ -337,13 +375,13 @@ class ObstacleContacts {
     const Vector3f margin = Vector3f::Constant((kNear + kPressedThrough) * spacing + obstacle_.rounding);
     const Passage deep = passage(widened(near_, kDeepest * spacing));
     // As far as that is known before they are seen.
-    const float front = obstacle_.faces_bodies ? 1 : cells_.last_side_of(rigid_.number, obstacle_.part);
+    const float front = obstacle_.faces_bodies ? 1 : body_.sides->last_side_of(rigid_.number, obstacle_.part);
     cells_.near_triangles.clear();
     cells_.boxes().for_each_meeting(deep.box, [&](std::uint32_t cell) {
-      const Vector3f inner = inner_place(body_, cell, body_.positions);
+      const Vector3f inner = inner_place(*body_.model, cell, body_.positions);
       const Bounds<3> around = cells_.boxes().at(cell);
       if (!overlap(near_, Bounds<3>{around.low.cwiseMin(inner), around.high.cwiseMax(inner)})) return;
-      const Vector3f inside = obstacle_.to_own(inner);
+      const Vector3f inside = origin_ ? *origin_ : obstacle_.to_own(inner);
       for_each_point_in(deep, cell, [&](const TouchPoint& point, const Vector3f& from, const Vector3f& to) {
         if (point.allowance > 0) return;  // it may be on either side
         const Way way = way_of(from, to);
@@ -465,7 +503,7 @@ class ObstacleContacts {
 
   /// Not towards the far side of something thin, nor towards a face that has another shape behind it.
   Hit turned_outwards(const Hit& hit, const Way& way, std::uint32_t cell, float allowance) {
-    const Vector3f inside = obstacle_.to_own(inner_place(body_, cell, body_.positions));
+    const Vector3f inside = obstacle_.to_own(inner_place(*body_.model, cell, body_.positions));
     if (const auto near = hit_of_entered_face(obstacle_, way, inside, hit, allowance, body_.spacing()))
       return *near;
     if (!may_have_others_beside()) return hit;
@@ -505,30 +543,12 @@ class ObstacleContacts {
   float friction_;
   float step_;
   std::vector<SoftContact>& contacts_;
-  Bounds<3> near_{};               // around the obstacle, as far as anything that moves may come from
-  Bounds<3> where_edges_begin_{};  // of the obstacle that may be in the body at the substep's end
+  std::optional<Vector3f> origin_;  // in the obstacle's frame; none: the body is on the side on which it was
+  Bounds<3> near_{};                // around the obstacle, as far as anything that moves may come from
+  Bounds<3> where_edges_begin_{};   // of the obstacle that may be in the body at the substep's end
 };
 
 }  // namespace
-
-float EndCells::last_side_of(std::uint32_t rigid, std::uint32_t part) const {
-  const auto known = std::ranges::find_if(sides_, Side::of(rigid, part));
-  return known != sides_.end() && known->side < 0 ? -1.0f : 1.0f;
-}
-
-float EndCells::side_of(std::uint32_t rigid, std::uint32_t part, int seen) {
-  constexpr int kMostDoubts = 12;
-  auto known = std::ranges::find_if(sides_, Side::of(rigid, part));
-  if (known == sides_.end()) known = sides_.insert(known, Side{rigid, part, true, 0, 0});
-  known->is_near = true;
-  const int side = seen > 0 ? 1 : seen < 0 ? -1 : 0;
-  if (side * known->side < 0)
-    ++known->doubts;
-  else if (side != 0)
-    known->doubts = 0;
-  if (side != 0 && (known->side == 0 || known->doubts > kMostDoubts)) known->side = side, known->doubts = 0;
-  return known->side < 0 ? -1.0f : 1.0f;
-}
 
 void find_contacts(const ContactBody& body, EndCells& cells, std::span<const Obstacle> obstacles,
                    std::span<const std::uint32_t> near, std::uint32_t obstacle,
@@ -581,8 +601,9 @@ void find_contacts(const ContactBody& a, EndCells& cells_of_a, const ContactBody
     };
     const auto place = cells_of_b.finder().find(to, is_apart);
     if (!place) return;
-    const auto way_out = itself ? way_out_of(b, *place, point.allowance)
-                                : way_out_of(b, *place, point.allowance, inner_place(a, cell, a.ends) - to);
+    const auto way_out =
+        itself ? way_out_of(b, *place, point.allowance)
+               : way_out_of(b, *place, point.allowance, inner_place(*a.model, cell, a.ends) - to);
     if (!way_out) return;
     SoftContact& contact = contacts.emplace_back();
     contact.a = model.held(point.anchor);

@@ -19,9 +19,6 @@ namespace softcell::ppu {
 class EndCells {
  public:
   void begin(const ContactBody& body) {
-    std::erase_if(sides_, [&](const Side& known) { return !known.is_near || body.model != model_; });
-    for (Side& known : sides_) known.is_near = false;
-    model_ = body.model;
     body_ = &body, is_placed_ = has_boxes_ = false;
     seen_ = 0;
   }
@@ -45,14 +42,6 @@ class EndCells {
     return known;
   }
 
-  /// On which side of a rigid body's triangles the body is: 1 in front, -1 behind. As long as it is near them it stays there, unless the
-  /// other side is seen again and again: pressed flat, a body may look as if it were on the other side.
-  /// @param rigid  ContactRigid::number   @param part  Obstacle::part
-  /// @param seen  above 0 in front, below 0 behind; 0 if that is not clear now
-  float side_of(std::uint32_t rigid, std::uint32_t part, int seen);
-  /// As side_of() had it in the last substep, or 1.
-  float last_side_of(std::uint32_t rigid, std::uint32_t part) const;
-
   /// A touch point and a triangle that it may meet; in the obstacle's frame.
   struct PointAtTriangle {
     const TouchPoint* point;
@@ -67,18 +56,7 @@ class EndCells {
   Beside beside;  // the obstacle that is looked at
 
  private:
-  struct Side {
-    static auto of(std::uint32_t rigid, std::uint32_t part) {
-      return [=](const Side& known) { return known.rigid == rigid && known.part == part; };
-    }
-    std::uint32_t rigid, part;
-    bool is_near;  // in this substep
-    int side;      // 0: not known
-    int doubts;    // substeps one after the other in which it looked like the other side
-  };
   const ContactBody* body_ = nullptr;
-  const ContactModel* model_ = nullptr;  // of the substep before
-  std::vector<Side> sides_;
   CellFinder finder_;
   CellBoxes boxes_;
   bool is_placed_ = false, has_boxes_ = false;

@@ -36,10 +36,24 @@ std::vector<CellPlace> deepest_nodes(const ContactSurface& surface, std::span<co
   return places;
 }
 
+/// Of what is thinner than the distance between nodes, all of them may be outside: then the middle of the cell's points is inside.
+void replace_those_outside(const ContactSurface& surface, std::vector<CellPlace>& places) {
+  auto point = surface.points().begin();  // ascending by cell
+  for (std::uint32_t cell = 0; cell < places.size(); ++cell) {
+    Vector3f sum = Vector3f::Zero();
+    int own = 0;
+    for (; point != surface.points().end() && point->cell == cell; ++point, ++own) sum += point->xi;
+    const bool is_inside = surface.field(places[cell].cell, places[cell].xi).distance < 0;
+    if (!is_inside && own > 0) places[cell] = {cell, sum / static_cast<float>(own)};
+  }
+}
+
 }  // namespace
 
 std::vector<CellPlace> find_inner_places(const ContactSurface& surface, const Lattice<3>& lattice) {
-  return deepest_nodes(surface, lattice.cells);
+  std::vector<CellPlace> places = deepest_nodes(surface, lattice.cells);
+  replace_those_outside(surface, places);
+  return places;
 }
 
 std::vector<CellPlace> find_inner_places(const FlatLayer& layer) {

@@ -12,20 +12,24 @@
 namespace softcell::spu {
 
 /// Of one cell. The rigid motion that has the corners' momenta is V + omega x r, with r in cells from the centre
-/// of mass; what differs from it shrinks.
+/// of mass; what differs from it shrinks. Velocities are those against the first corner.
 /// @param changes    of velocities times the root of the mass, and 0
 /// @param start      what has changed, and that root
 /// @param positions  x y z and anything, metres
 inline void stiffen(vec_ushort8 corner, vec_float4* changes, const vec_float4* start,
                     const vec_float4* positions, float share, float inverse_spacing) {
   const vec_float4 zero = spu_splats(0.0f);
-  const vec_float4 first = positions[spu_extract(corner, 0)];  // far from the origin, sums would lose digits
+  // From the first corner: far from the origin, and of what is fast, sums would lose digits, and SPUs truncate all of them the same way.
+  const uint32_t first_corner = spu_extract(corner, 0);
+  const vec_float4 first = positions[first_corner];
+  const vec_float4 carried = spu_mul(only_xyz(spu_add(start[first_corner], changes[first_corner])),
+                                     reciprocal(splat_lane<3>(start[first_corner])));
   vec_float4 arm[8], root[8], now[8];
   vec_float4 mass = zero, moment = zero, momentum = zero;
   for (int k = 0; k < 8; ++k) {
     const uint32_t particle = spu_extract(corner, k);
     root[k] = splat_lane<3>(start[particle]);
-    now[k] = only_xyz(spu_add(start[particle], changes[particle]));
+    now[k] = only_xyz(spu_nmsub(root[k], carried, spu_add(start[particle], changes[particle])));
     const vec_float4 m = spu_mul(root[k], root[k]);
     arm[k] = spu_mul(spu_sub(positions[particle], first), spu_splats(inverse_spacing));
     mass = spu_add(mass, m);

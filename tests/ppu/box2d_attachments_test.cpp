@@ -257,6 +257,27 @@ TEST(Box2dAttachmentsOfDrawnEdges, WhatIsWeldedAsAWholeCarriesARigidBody) {
   }
 }
 
+/// Box2D lets nothing fall, and moves nothing, that is dynamic and has no mass: without a fixture, or with one of density 0.
+TEST_P(Box2dAttachments, HoldToADynamicBodyWithoutMass) {
+  for (const bool with_fixture : {false, true}) {
+    for (const AttachmentKind kind : {AttachmentKind::kWeld, AttachmentKind::kHinge, AttachmentKind::kRope}) {
+      World2d w(9.81f, GetParam());
+      const SoftBody<2>& body = w.soft.add(rectangle_model({4, 4}, firm()), {0, 0});
+      b2BodyDef definition;
+      definition.type = b2_dynamicBody;
+      definition.position = {0, 1};
+      b2Body* const rigid = w.box2d.CreateBody(&definition);
+      b2CircleShape circle;
+      circle.m_radius = 0.1f;
+      if (with_fixture) rigid->CreateFixture(&circle, 0);
+      w.soft.attach(body, Patch<2>::of_surface({0, 0.4f}, 0.12f), *rigid, {.kind = kind});
+      w.run(2);
+      EXPECT_EQ(rigid->GetPosition(), b2Vec2(0, 1));
+      EXPECT_NEAR(middle_of(body).y(), 0.2f, 0.1f);
+    }
+  }
+}
+
 /// Two that are welded overlap where they lie, and do not push each other apart; when they are free they do.
 TEST_P(Box2dAttachments, WhatIsWeldedDoesNotTouchEachOther) {
   World2d w(0, GetParam());

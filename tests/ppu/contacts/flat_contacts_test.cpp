@@ -123,6 +123,19 @@ TEST_P(FlatContacts, WhatIsDrawnRestsOnTheFloor) {
   EXPECT_EQ(w->box2d.GetBodyCount(), 1);
 }
 
+/// Box2D lets nothing fall, and moves nothing, that is dynamic and has no mass.
+TEST_P(FlatContacts, ADynamicBodyWithoutMassHoldsWhatFallsOnIt) {
+  const auto w = world();
+  b2Body* const table = w->add_box({0, 0}, {1, 0.1f});
+  table->GetFixtureList()->SetDensity(0);
+  table->SetType(b2_dynamicBody);
+  SoftBodySettings settings{.cell_size = 0.1f};
+  const SoftBody<2>& body = w->soft.add(rectangle_model({4, 2}, settings), {0, 0.5f});
+  w->run(3);
+  EXPECT_EQ(table->GetPosition(), b2Vec2(0, 0));
+  EXPECT_NEAR(body.bounds().low.y(), 0.1f + 0.5f * settings.cell_size, 0.02f);
+}
+
 TEST_P(FlatContacts, OneBodyRestsOnAnother) {
   const auto w = world();
   w->add_box({0, -1}, {10, 1});

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "contact_world.h"
+#include "softcell/soft_bodies/attachment.h"
 
 namespace softcell::ppu {
 namespace {
@@ -95,6 +96,39 @@ TEST(MovingObstacles, AWallThatIsMovedPushesABodyAlong) {
     }
     EXPECT_LT(deepest, 0.15f * kOfCube) << speed << " m/s";
     EXPECT_GT(body.centre_of_mass().x(), 0) << speed << " m/s";
+  }
+}
+
+/// Bullet's solver multiplies what impulses do by these factors: characters do not turn, games in a plane stay in it.
+TEST(MovingObstacles, MoveAlongAndAboutTheAxesThatBulletLeavesThem) {
+  const auto falls_on = [](const btVector3& linear, const btVector3& angular, bool attached) {
+    ContactWorld w;
+    btRigidBody& box = w.add(std::make_unique<btBoxShape>(btVector3(0.2f, 0.2f, 0.2f)), 5, {0, 0, 0});
+    box.setLinearFactor(linear);
+    box.setAngularFactor(angular);
+    SoftBody<3>& soft =
+        w.add(make_box({0.3f, 0.3f, 0.3f}, kOfCube), settings_of(kOfCube), {0.15f, 0.4f, 0.1f});
+    soft.add_velocity({1, -3, 1});
+    if (attached) w.bodies.attach(soft, Patch<3>::of_surface({0.1f, 0.25f, 0}, 0.2f), box);
+    w.run(30);
+    for (const Vector3f& x : soft.positions()) EXPECT_TRUE(x.allFinite());
+    return box.getWorldTransform();
+  };
+  for (const bool attached : {false, true}) {
+    SCOPED_TRACE(attached ? "attached" : "touched");
+    const btTransform fixed = falls_on({0, 0, 0}, {0, 0, 0}, attached);
+    EXPECT_EQ(fixed.getOrigin(), btVector3(0, 0, 0));
+    EXPECT_EQ(fixed.getRotation().getAngle(), 0);
+    const btTransform upright = falls_on({1, 1, 1}, {0, 0, 0}, attached);
+    EXPECT_LT(upright.getOrigin().y(), -1);
+    EXPECT_EQ(upright.getRotation().getAngle(), 0);
+    const btTransform turning = falls_on({0, 0, 0}, {1, 1, 1}, attached);
+    EXPECT_EQ(turning.getOrigin(), btVector3(0, 0, 0));
+    EXPECT_GT(turning.getRotation().getAngle(), 0.1f);
+    const btTransform in_plane = falls_on({1, 1, 0}, {0, 0, 1}, attached);
+    EXPECT_EQ(in_plane.getOrigin().z(), 0);
+    EXPECT_NE(in_plane.getOrigin().x(), 0);
+    EXPECT_NEAR(in_plane.getBasis().getColumn(2).z(), 1, 1e-6f);
   }
 }
 

@@ -1,7 +1,9 @@
 // Bodies that break in a Box2D world.
 #include <gtest/gtest.h>
 
+#include <box2d/b2_chain_shape.h>
 #include <box2d/b2_circle_shape.h>
+#include <box2d/b2_edge_shape.h>
 
 #include <algorithm>
 #include <chrono>
@@ -187,6 +189,38 @@ TEST_P(Box2dFracture, ADiscThatFallsBreaksAndItsPiecesLieOnTheFloor) {
   }
   for (std::size_t b = 0; b < w.soft.size(); ++b) outer += w.soft[b].model().outer().size();
   EXPECT_EQ(particles, GetParam() == ContactMethod::kSpheres ? outer : 0);
+}
+
+/// Edges and chains have two sides: a piece whose cells are pressed through one as it breaks off stays on the side of the whole.
+TEST(Box2dFractureOfDrawnEdges, PiecesStayOnTheirSideOfAnEdge) {
+  for (const bool chain : {false, true}) {
+    for (const float speed : {2.0f, 4.0f, 8.0f}) {
+      for (const float angle : {0.0f, 0.8f, 1.57f}) {
+        SCOPED_TRACE(testing::Message()
+                     << (chain ? "chain " : "edge ") << speed << " m/s, turned by " << angle);
+        World2d w(9.81f, ContactMethod::kSurface);
+        b2BodyDef ground;
+        if (chain) {
+          b2ChainShape shape;
+          const b2Vec2 corners[] = {{40, 0}, {0, 0}, {-40, 0}};
+          shape.CreateChain(corners, 3, {41, 0}, {-41, 0});
+          w.box2d.CreateBody(&ground)->CreateFixture(&shape, 0);
+        } else {
+          b2EdgeShape shape;
+          shape.SetTwoSided({-40, 0}, {40, 0});
+          w.box2d.CreateBody(&ground)->CreateFixture(&shape, 0);
+        }
+        SoftBodySettings settings = brittle_2d(0.05f, 0.15f);
+        settings.density = 300, settings.alpha = 0.6f;
+        SoftBody<2>& bar = w.soft.add(rectangle_model({12, 4}, settings), {0, 0});
+        bar.move_without_force(Eigen::Rotation2Df(angle), {0, 1});
+        bar.add_velocity({0, -speed});
+        w.run(2);
+        EXPECT_GT(w.soft.size(), 1u);
+        for (std::size_t b = 0; b < w.soft.size(); ++b) EXPECT_GT(w.soft[b].centre_of_mass().y(), 0) << b;
+      }
+    }
+  }
 }
 
 /// A cut alone moves nothing: the upper half stays on the lower one, although their circles cover each other at first.

@@ -174,8 +174,28 @@ void expect_both_momenta(SolverFactory* solvers) {
   EXPECT_GT(most, 4u);
   const Momenta after = momenta_of(world.bodies);
   // Pieces are up to 30 m away by then.
-  EXPECT_LT((after.momentum - before.momentum).norm(), 1e-5 * scale);
+  // Cells along cracks touch in each substep: a sum that lost digits there would show.
+  EXPECT_LT((after.momentum - before.momentum).norm(), 2e-6 * scale);
   EXPECT_LT((after.angular_momentum - before.angular_momentum).norm(), 1e-5 * scale * 30);
+}
+
+/// Whichever way a ground of triangles is wound.
+TEST(BulletFracture, PiecesStayOnTheirSideOfTriangles) {
+  for (const bool upwards : {true, false}) {
+    SCOPED_TRACE(upwards);
+    btTriangleMesh triangles;
+    const btVector3 a(-20, 0, -20), b(-20, 0, 20), c(20, 0, 20), d(20, 0, -20);
+    triangles.addTriangle(a, upwards ? b : c, upwards ? c : b);
+    triangles.addTriangle(a, upwards ? c : d, upwards ? d : c);
+    ContactWorld world;
+    world.add(std::make_unique<btBvhTriangleMeshShape>(&triangles, true), 0, {0, 0, 0});
+    SoftBody<3>& ball = world.bodies.add(brittle_ball(0.03f), {0, 0.6f, 0});
+    ball.add_velocity({0, -12, 0});
+    run(world, 240);
+    EXPECT_GT(world.bodies.size(), 3u);
+    for (std::size_t piece = 0; piece < world.bodies.size(); ++piece)
+      EXPECT_GT(ContactWorld::lowest_drawn(world.bodies[piece]), -0.03f) << piece;
+  }
 }
 
 TEST(BulletFracture, KeepsBothMomentaForAThousandSteps) {
