@@ -93,6 +93,9 @@ b2Vec2 fall_of(const b2Body& body, const b2Vec2& gravity, float step);
 /// 1/(kg m^2), about its centre of mass; 0: nothing turns it. @pre it is dynamic
 float inverse_inertia_of(const b2Body& body);
 
+inline bool is_same(const b2Transform& a, const b2Transform& b) {
+  return a.p == b.p && a.q.s == b.q.s && a.q.c == b.q.c;
+}
 inline b2Vec2 to_box2d(const Eigen::Vector2f& v) { return {v.x(), v.y()}; }
 inline Eigen::Vector2f to_eigen(const b2Vec2& v) { return {v.x, v.y}; }
 

@@ -7,6 +7,7 @@
 #include <box2d/b2_world_callbacks.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "ppu/box2d/box2d_body.h"
@@ -55,6 +56,56 @@ float depth_behind(const b2PolygonShape& polygon, int face) {
   return -least;
 }
 
+/// FNV-1a.
+class LookHash {
+ public:
+  void add(std::uint32_t number) { hash_ = (hash_ ^ number) * 0x100000001b3u; }
+  void add(float number) { add(std::bit_cast<std::uint32_t>(number)); }
+  void add(std::span<const b2Vec2> points) {
+    for (const b2Vec2& point : points) add(point.x), add(point.y);
+  }
+  std::uint64_t value() const { return hash_; }
+
+ private:
+  std::uint64_t hash_ = 0xcbf29ce484222325u;
+};
+
+void add_shape(const b2Shape& shape, LookHash& hash) {
+  hash.add(shape.m_radius);
+  switch (shape.GetType()) {
+    case b2Shape::e_circle:
+      return hash.add({&static_cast<const b2CircleShape&>(shape).m_p, 1});
+    case b2Shape::e_polygon: {
+      const auto& polygon = static_cast<const b2PolygonShape&>(shape);
+      return hash.add({polygon.m_vertices, static_cast<std::size_t>(polygon.m_count)});
+    }
+    case b2Shape::e_edge: {
+      const auto& edge = static_cast<const b2EdgeShape&>(shape);
+      hash.add({&edge.m_vertex1, 1});
+      return hash.add({&edge.m_vertex2, 1});
+    }
+    case b2Shape::e_chain: {
+      const auto& chain = static_cast<const b2ChainShape&>(shape);
+      return hash.add({chain.m_vertices, static_cast<std::size_t>(chain.m_count)});
+    }
+    default:
+      return;
+  }
+}
+
+/// As Box2dObstacles::look().
+std::uint64_t look_of(const b2Body& body) {
+  LookHash hash;
+  hash.add(std::uint32_t{body.IsEnabled()});
+  for (const b2Fixture* fixture = body.GetFixtureList(); fixture != nullptr; fixture = fixture->GetNext()) {
+    hash.add(std::uint32_t{fixture->IsSensor()});
+    hash.add(std::uint32_t{fixture->GetFilterData().categoryBits} << 16 | fixture->GetFilterData().maskBits);
+    hash.add(static_cast<std::uint32_t>(fixture->GetType()));
+    add_shape(*fixture->GetShape(), hash);
+  }
+  return hash.value();
+}
+
 bool is_under_way(const b2Body& body) {
   return body.IsAwake() && (body.GetLinearVelocity().LengthSquared() > 0 || body.GetAngularVelocity() != 0);
 }
@@ -88,6 +139,7 @@ void Box2dObstacles::begin(b2World& world, float step, float layer) {
   SC_ASSERT(step > 0 && layer > 0, "a substep of {} s, of bodies {} m above and below the plane", step,
             layer);
   world_ = &world;
+  ++steps_;
   step_ = step;
   layer_ = layer;
   obstacles_.clear();
@@ -133,15 +185,25 @@ void Box2dObstacles::number_bodies() {
   unknown_.clear();
   std::size_t count = 0;
   for (b2Body* body = world_->GetBodyList(); body != nullptr; body = body->GetNext(), ++count)
-    if (!numbers_.contains(body)) unknown_.push_back(body);
-  if (numbers_.size() + unknown_.size() != count) {
-    std::unordered_map<const b2Body*, std::uint32_t> there;
+    if (!known_bodies_.contains(body)) unknown_.push_back(body);
+  if (known_bodies_.size() + unknown_.size() != count) {
+    std::unordered_map<const b2Body*, KnownBody> there;
     for (const b2Body* body = world_->GetBodyList(); body != nullptr; body = body->GetNext())
-      if (const auto known = numbers_.find(body); known != numbers_.end()) there.insert(*known);
-    numbers_ = std::move(there);
+      if (const auto known = known_bodies_.find(body); known != known_bodies_.end()) there.insert(*known);
+    known_bodies_ = std::move(there);
   }
   for (auto body = unknown_.rbegin(); body != unknown_.rend(); ++body)
-    numbers_.emplace(*body, next_number_++);
+    known_bodies_.emplace(*body, KnownBody{next_number_++});
+}
+
+/// Once in a step: a chain may be long.
+std::uint64_t Box2dObstacles::look(const b2Body& body) {
+  KnownBody& known = known_bodies_.at(&body);
+  if (known.looked != steps_) {
+    known.looked = steps_;
+    known.look = look_of(body);
+  }
+  return known.look;
 }
 
 void Box2dObstacles::add_near(const Bounds<3>& box, const Vector2f& middle, const CollisionFilter& filter,

@@ -44,10 +44,13 @@ class Box2dObstacles {
   b2Fixture& fixture(std::uint32_t obstacle) const { return *fixtures_[obstacle]; }
 
   /// Whether the world has a body, which may be destroyed. @pre begin() was called
-  bool has(const b2Body* body) const { return numbers_.contains(body); }
+  bool has(const b2Body* body) const { return known_bodies_.contains(body); }
 
   /// Of a body of the world, for as long as it is there.
-  std::uint32_t number(const b2Body& body) const { return numbers_.at(&body); }
+  std::uint32_t number(const b2Body& body) const { return known_bodies_.at(&body).number; }
+  /// Of a body of the world: another number when it was enabled or disabled, or a fixture was added, destroyed, made a sensor or solid, or
+  /// given another filter or shape. @pre begin() was called
+  std::uint64_t look(const b2Body& body);
   /// How many fixtures a body has got before this one.
   static std::uint32_t number(const b2Fixture& fixture);
 
@@ -78,6 +81,12 @@ class Box2dObstacles {
     int face;  // of a polygon, or kWhole
     std::uint32_t obstacle;
   };
+  /// A body of the world.
+  struct KnownBody {
+    std::uint32_t number;
+    std::uint64_t looked = 0;  // at the step of this number; 0: never
+    std::uint64_t look = 0;
+  };
   class Collector;
 
   void number_bodies();
@@ -102,7 +111,8 @@ class Box2dObstacles {
   std::vector<b2Fixture*> fixtures_;  // of each obstacle
   std::vector<ContactRigid> rigids_, before_;
   std::vector<b2Body*> bodies_;
-  std::unordered_map<const b2Body*, std::uint32_t> numbers_;  // of all that the world has
+  std::unordered_map<const b2Body*, KnownBody> known_bodies_;  // all that the world has
+  std::uint64_t steps_ = 0;
   std::uint32_t next_number_ = 0;
   std::vector<b2Body*> unknown_;
   std::vector<b2Body*> moving_;  // in this substep

@@ -67,6 +67,7 @@ struct Box2dSoftBodies::Impl {
       for (const auto& body : bodies) {
         if (body->was_reset()) solve.forget(body->soft());
         if (body->is_of_other_model()) take_other_model(*body);
+        if (surfaces && body->was_changed()) surfaces->tell_those_on(*body);
         body->begin_step();
       }
     }
@@ -388,6 +389,7 @@ void Box2dSoftBodies::set_filter(const SoftBody<2>& body, const CollisionFilter&
   Box2dBody& coupled = **impl_->find(body, "to get a filter");
   if (coupled.soft().asleep()) coupled.wake();
   coupled.set_filter(filter);
+  if (impl_->surfaces) impl_->surfaces->tell_those_on(coupled);
 }
 
 /// @throws std::invalid_argument  it is no length of time

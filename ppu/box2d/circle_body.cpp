@@ -77,7 +77,37 @@ void CircleBody::set_filter(const CollisionFilter& filter) {
 /// Box2D has woken a particle because something that moves touches it, or what it touched is gone.
 bool CircleBody::was_disturbed() const {
   return Box2dBody::was_disturbed() ||
-         std::ranges::any_of(particles_, [](const b2Body* particle) { return particle->IsAwake(); });
+         std::ranges::any_of(particles_, [](const b2Body* particle) { return particle->IsAwake(); }) ||
+         has_lost_support();
+}
+
+/// Particles of other bodies wake those that they touch; only they may not fall asleep.
+void CircleBody::remember_supports() {
+  supports_.clear();
+  for (const b2Body* const particle : particles_) {
+    for (const b2ContactEdge* edge = particle->GetContactList(); edge != nullptr; edge = edge->next) {
+      const b2Body& other = *edge->other;
+      const bool is_rigid = other.GetType() != b2_dynamicBody || other.IsSleepingAllowed();
+      if (edge->contact->IsTouching() && is_rigid &&
+          std::ranges::find(supports_, &other, &Support::body) == supports_.end())
+        supports_.push_back({&other, other.GetTransform()});
+    }
+  }
+}
+
+/// Of what Box2D tells nobody, as it looks at no contact between two bodies that sleep: the program has moved what a particle lies on, or
+/// made it a sensor. Bodies that contacts know are there.
+bool CircleBody::has_lost_support() const {
+  for (const b2Body* const particle : particles_) {
+    for (const b2ContactEdge* edge = particle->GetContactList(); edge != nullptr; edge = edge->next) {
+      const auto support = std::ranges::find(supports_, edge->other, &Support::body);
+      if (support == supports_.end()) continue;
+      if (!is_same(edge->other->GetTransform(), support->pose) || edge->contact->GetFixtureA()->IsSensor() ||
+          edge->contact->GetFixtureB()->IsSensor())
+        return true;
+    }
+  }
+  return false;
 }
 
 bool CircleBody::was_pushed() const {
@@ -96,6 +126,8 @@ void CircleBody::place_particle(std::size_t particle) {
 }
 
 void CircleBody::set_particles_awake(bool awake) {
+  supports_.clear();
+  if (!awake) remember_supports();
   for (b2Body* const particle : particles_) particle->SetAwake(awake);
 }
 

@@ -30,7 +30,15 @@ class CircleBody final : public Box2dBody {
   void end_step(float step) override;
 
  private:
+  /// A rigid body that a particle touched when the body fell asleep.
+  struct Support {
+    const b2Body* body;
+    b2Transform pose;
+  };
+
   bool was_disturbed() const override;
+  void remember_supports();
+  bool has_lost_support() const;
   void exchange_particles() override;
   void gather_particles() override;
   void place_particles() override;
@@ -43,6 +51,7 @@ class CircleBody final : public Box2dBody {
 
   std::int16_t group_;
   std::vector<b2Body*> particles_;
+  std::vector<Support> supports_;   // while it sleeps
   std::vector<b2Body*> of_number_;  // by the particle's number in the body; null: an inner one
 };
 

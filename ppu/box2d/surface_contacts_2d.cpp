@@ -32,10 +32,6 @@ float largest_cell(SurfaceContacts2d::Bodies bodies) {
   return largest;
 }
 
-bool is_same(const b2Transform& a, const b2Transform& b) {
-  return a.p == b.p && a.q.s == b.q.s && a.q.c == b.q.c;
-}
-
 }  // namespace
 
 SurfaceContacts2d::SurfaceContacts2d(b2World& world, std::shared_ptr<ContactWorker> worker)
@@ -124,33 +120,39 @@ void SurfaceContacts2d::begin(Bodies bodies, const Box2dAttachments& attachments
   }
 }
 
-/// Whether a body near a sleeper has gone, however slowly, from where it was when it was seen first, by more than contacts let it be in the
-/// sleeper.
-bool SurfaceContacts2d::notices(Kept& kept, const SoftBody<2>& sleeper, b2Body& body) {
-  constexpr float kCreep = 0.02f;  // cells
-  const auto known = std::ranges::find(kept.seen, &body, &Support::body);
-  if (known == kept.seen.end()) {
-    kept.seen.push_back({&body, body.GetTransform()});
-    return false;
-  }
-  const Eigen::Vector2f centre = sleeper.centre_of_mass();
-  const b2Vec2 middle{centre.x(), centre.y()};
-  const b2Vec2 there = b2Mul(body.GetTransform(), b2MulT(known->pose, middle));
-  const float far = kCreep * sleeper.model().lattice().spacing;
-  return b2DistanceSquared(there, middle) > far * far;
+/// The world does not have it, or it is another one to those that touch it. Box2D tells only those that it knows.
+bool SurfaceContacts2d::is_gone(const Support& support) {
+  return !obstacles_.has(support.body) || obstacles_.look(*support.body) != support.look;
+}
+
+/// Near a sleeper: how it is when it is seen first.
+void SurfaceContacts2d::see(Kept& kept, b2Body& body) {
+  if (std::ranges::find(kept.seen, &body, &Support::body) == kept.seen.end())
+    kept.seen.push_back(as_it_is(body));
 }
 
 /// What lies beside it has begun to move, or what it lies on is gone.
-bool SurfaceContacts2d::must_wake(Kept& kept, const SoftBody<2>& sleeper, const BodyInStage& in_stage) const {
-  const auto is_gone = [&](const Support& support) {
-    return !obstacles_.has(support.body) || !is_same(support.body->GetTransform(), support.pose);
+bool SurfaceContacts2d::must_wake(Kept& kept, const SoftBody<2>& sleeper, const BodyInStage& in_stage) {
+  constexpr float kCreep = 0.02f;  // cells: more than contacts let something be in the sleeper
+  const float far = kCreep * sleeper.model().lattice().spacing;
+  const Eigen::Vector2f centre = sleeper.centre_of_mass();
+  const auto is_gone_or_moved = [&](const Support& support) {
+    return is_gone(support) || !is_same(support.body->GetTransform(), support.pose);
+  };
+  const auto is_gone_or_elsewhere = [&](const Support& seen) {
+    if (is_gone(seen)) return true;
+    const b2Vec2 middle{centre.x(), centre.y()};
+    const b2Vec2 there = b2Mul(seen.body->GetTransform(), b2MulT(seen.pose, middle));
+    return b2DistanceSquared(there, middle) > far * far;
   };
   const auto moves_there = [&](std::uint32_t obstacle) {
     b2Body& body = *obstacles_.bodies()[obstacles_.obstacles()[obstacle].rigid];
-    return moves(body) || notices(kept, sleeper, body);
+    see(kept, body);
+    return moves(body);
   };
-  return kept.lost_support || std::ranges::any_of(kept.supports, is_gone) ||
-         std::ranges::any_of(in_stage.obstacles, moves_there);
+  return kept.lost_support || std::ranges::any_of(kept.supports, is_gone_or_moved) ||
+         std::ranges::any_of(in_stage.obstacles, moves_there) ||
+         std::ranges::any_of(kept.seen, is_gone_or_elsewhere);
 }
 
 /// It is awake: what has slept with it wakes, too.
@@ -309,7 +311,7 @@ void SurfaceContacts2d::append_contacts(std::vector<Contact2d>& contacts) const 
 void SurfaceContacts2d::let_lie(const Box2dBody& body) {
   Kept& kept = kept_[&body];
   for (const auto& [soft, rigid] : touches_.rigid)
-    if (soft == &body) kept.supports.push_back({rigid, rigid->GetTransform()});
+    if (soft == &body) kept.supports.push_back(as_it_is(*rigid));
   for (const auto& [a, b] : touches_.soft) {
     if (a == &body) kept.lies_on.push_back(b);
     if (b == &body) kept.lies_on.push_back(a);
@@ -323,8 +325,7 @@ void SurfaceContacts2d::forget(const Box2dBody& body) {
   }
   std::erase_if(touches_.soft, [&](const auto& pair) { return pair.first == &body || pair.second == &body; });
   std::erase_if(touches_.rigid, [&](const auto& pair) { return pair.first == &body; });
-  for (auto& [other, kept] : kept_)
-    if (std::ranges::find(kept.lies_on, &body) != kept.lies_on.end()) kept.lost_support = true;
+  tell_those_on(body);
   log_.forget(body.soft());
   stage_.forget_who_presses();
 }
@@ -342,6 +343,11 @@ void SurfaceContacts2d::follow_pieces(const Box2dBody& body, const SoftBodyModel
     kept.sides = sides_of_piece(before.sides, before.model->contact, before.positions, whole.lattice(),
                                 soft.model().lattice(), piece.particle_of);
   }
+}
+
+void SurfaceContacts2d::tell_those_on(const Box2dBody& body) {
+  for (auto& [other, kept] : kept_)
+    if (std::ranges::find(kept.lies_on, &body) != kept.lies_on.end()) kept.lost_support = true;
 }
 
 void SurfaceContacts2d::forget_pieces(Bodies bodies) {

@@ -75,6 +75,8 @@ class SurfaceContacts2d {
   void let_lie(const Box2dBody& body);
   /// A body goes: those that lie on it wake.
   void forget(const Box2dBody& body);
+  /// A body goes, or may go, from where it is, or no longer touches what it did: likewise.
+  void tell_those_on(const Box2dBody& body);
   /// A piece, and of each of its particles which one of the whole it was.
   struct Piece {
     const Box2dBody* body;
@@ -86,10 +88,11 @@ class SurfaceContacts2d {
   void forget_pieces(Bodies bodies);
 
  private:
-  /// A rigid body on which a soft one lies, as it was when this fell asleep.
+  /// A rigid body as it was when a soft one that lies on it, or near it, fell asleep.
   struct Support {
     b2Body* body;
     b2Transform pose;
+    std::uint64_t look;  // Box2dObstacles::look()
   };
   /// What is kept of a body.
   struct Kept {
@@ -109,8 +112,10 @@ class SurfaceContacts2d {
   void lift(const Box2dBody& body, Kept& kept, float step);
   void begin(Bodies bodies, const Box2dAttachments& attachments, float step);
   void begin_attachments(Bodies bodies, Box2dAttachments& attachments, float step);
-  static bool notices(Kept& kept, const SoftBody<2>& sleeper, b2Body& body);
-  bool must_wake(Kept& kept, const SoftBody<2>& sleeper, const BodyInStage& in_stage) const;
+  Support as_it_is(b2Body& body) { return {&body, body.GetTransform(), obstacles_.look(body)}; }
+  bool is_gone(const Support& support);
+  void see(Kept& kept, b2Body& body);
+  bool must_wake(Kept& kept, const SoftBody<2>& sleeper, const BodyInStage& in_stage);
   void rise(Kept& kept);
   void wake_those_in_the_way(Bodies bodies);
   void move(Bodies bodies, float step);

@@ -205,13 +205,16 @@ void SurfaceAttachments::find_islands() {
 void SurfaceAttachments::begin() {
   end_gone();
   for (const Island& island : islands_) {
-    const bool awake =
-        std::any_of(island.bodies.begin(), island.bodies.end(),
-                    [](const auto* body) { return !body->soft().asleep(); }) ||
-        std::any_of(island.rigids.begin(), island.rigids.end(), [&](const auto* rigid) {
-          return (rigid->isActive() && (is_moved_by_bullet(*rigid) || !is_slow(*rigid, kMovesFrom))) ||
-                 (!island.bodies.empty() && island.bodies.front()->notices(*rigid));
-        });
+    const bool awake = std::any_of(island.bodies.begin(), island.bodies.end(),
+                                   [](const auto* body) { return !body->soft().asleep(); }) ||
+                       std::any_of(island.rigids.begin(), island.rigids.end(),
+                                   [&](const auto* rigid) {
+                                     if (!island.bodies.empty())
+                                       island.bodies.front()->see(rigid->getWorldArrayIndex());
+                                     return rigid->isActive() &&
+                                            (is_moved_by_bullet(*rigid) || !is_slow(*rigid, kMovesFrom));
+                                   }) ||
+                       (!island.bodies.empty() && island.bodies.front()->notices_a_change());
     if (!awake) continue;
     for (SurfaceBody* const body : island.bodies)
       if (body->soft().asleep()) body->rouse();

@@ -10,6 +10,7 @@
 
 #include "ppu/bullet/bullet_vector.h"
 #include "ppu/bullet/coupled_body.h"
+#include "ppu/bullet/seen_object.h"
 #include "ppu/contacts/contact_body.h"
 #include "softcell/base/assert.h"
 
@@ -95,28 +96,24 @@ class SurfaceBody final : public CoupledBody {
   Bounds<3> box() const override { return soft_.bounds(); }
   std::optional<Bounds<3>> box_asleep() const override { return box_asleep_; }
 
-  /// While it sleeps: whether the object has gone, however slowly, from where it was when it was seen first, by more than contacts let it
-  /// be in the body.
-  bool notices(const btCollisionObject& object) {
+  /// It sleeps: remembers an object near it as it is, unless it knows it. @param place  in the world's list of objects
+  void see(int place) {
+    const btCollisionObject& object = *world_.getCollisionObjectArray()[place];
+    const auto is_known = [&](const SeenObject& seen) { return seen.is(object); };
+    if (std::ranges::none_of(seen_, is_known)) seen_.emplace_back(world_, place);
+  }
+  /// Whether something that it has seen since it fell asleep is gone, has changed or is elsewhere, however slowly it went, by more than
+  /// contacts let it be in the body.
+  bool notices_a_change() {
     if (!box_asleep_) box_asleep_ = soft_.bounds();  // a sleeper that was assigned to it
-    const btVector3 middle = to_bullet(0.5f * (box_asleep_->low + box_asleep_->high));
-    const auto known = std::ranges::find(seen_, &object, &Seen::object);
-    if (known == seen_.end()) {
-      seen_.push_back({&object, object.getWorldTransform()});
-      return false;
-    }
-    const btVector3 there = object.getWorldTransform() * known->place.invXform(middle);
+    const Eigen::Vector3f middle = 0.5f * (box_asleep_->low + box_asleep_->high);
     const float far = kCreep * soft_.model().lattice().spacing;
-    return there.distance2(middle) > far * far;
+    return std::ranges::any_of(seen_,
+                               [&](SeenObject& seen) { return seen.has_changed(world_, middle, far); });
   }
   float reach() const override { return 0.1f * soft_.model().lattice().spacing; }
 
  private:
-  /// What lies near a sleeper.
-  struct Seen {
-    const btCollisionObject* object;
-    btTransform place;  // at first
-  };
   static constexpr float kCreep = 0.02f;  // cells
 
   void fall_asleep() override { box_asleep_ = soft_.bounds(); }
@@ -124,7 +121,7 @@ class SurfaceBody final : public CoupledBody {
   KnownSides sides_;
   Eigen::Vector3f place_of_sides_{0, 0, 0};  // of the first particle, since they are known
   std::optional<Bounds<3>> box_asleep_;
-  std::vector<Seen> seen_;  // since it fell asleep
+  std::vector<SeenObject> seen_;  // since it fell asleep
   const ContactModel* contact_;
   std::uint32_t number_;
   bool holds_a_moving_body_ = false, is_still_ = false;

@@ -59,6 +59,24 @@ bool SurfaceContacts::any_near(const BodyInStage& body, const Is& is) const {
   });
 }
 
+/// What moves comes near the sleeper, or what is near it is no longer what it was.
+bool SurfaceContacts::is_disturbed(SurfaceBody& sleeper, const BodyInStage& in_stage) const {
+  const auto moves_or_is_seen = [&](const btCollisionObject& object) {
+    sleeper.see(object.getWorldArrayIndex());
+    return moves(object);
+  };
+  return any_near(in_stage, moves_or_is_seen) || sleeper.notices_a_change();
+}
+
+/// It has just fallen asleep. The program's callbacks may have removed some of what was near in this substep.
+void SurfaceContacts::see_what_is_near(SurfaceBody& sleeper, const BodyInStage& in_stage) const {
+  for (const std::uint32_t obstacle : in_stage.obstacles) {
+    const btCollisionObject* const object = obstacles_.objects()[obstacles_.obstacles()[obstacle].rigid];
+    const int place = SeenObject::place_of(world_, object);
+    if (place >= 0) sleeper.see(place);
+  }
+}
+
 void SurfaceContacts::step(std::span<SurfaceBody* const> bodies, float step) {
   obstacles_.begin(world_, step);
   if (!attachments_.empty()) attachments_.begin();
@@ -80,10 +98,7 @@ void SurfaceContacts::step(std::span<SurfaceBody* const> bodies, float step) {
     obstacles_.add_near(in_stage.box, bodies[i]->filter().group, bodies[i]->filter().mask,
                         in_stage.obstacles);
     if (!attachments_.empty()) attachments_.part(*bodies[i], obstacles_, in_stage.obstacles);
-    const auto disturbs = [&](const btCollisionObject& object) {
-      return moves(object) || bodies[i]->notices(object);
-    };
-    if (bodies[i]->soft().asleep() && any_near(in_stage, disturbs)) bodies[i]->rouse();
+    if (bodies[i]->soft().asleep() && is_disturbed(*bodies[i], in_stage)) bodies[i]->rouse();
     in_stage.filter = bodies[i]->filter();
   }
   wake_those_in_the_way(bodies);
@@ -173,6 +188,9 @@ void SurfaceContacts::let_sleep(std::span<SurfaceBody* const> bodies, const Slee
     if (body->island() && !body->soft().asleep() && !body->is_attached() && !is_restless_[*body->island()])
       body->fall_asleep_with_others();
   attachments_.let_sleep(sleep);
+  // Before the program can change anything. Bodies that have come in this substep are behind the others, and awake.
+  for (std::size_t i = 0; i < std::min(bodies.size(), in_stage_.size()); ++i)
+    if (bodies[i]->soft().asleep() && !in_stage_[i].asleep) see_what_is_near(*bodies[i], in_stage_[i]);
 }
 
 SurfaceContacts::Touch& SurfaceContacts::touch_of(const SurfaceBody& body, TouchedKind kind,

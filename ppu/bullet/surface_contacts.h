@@ -66,6 +66,8 @@ class SurfaceContacts {
   void move(std::span<SurfaceBody* const> bodies, float step);
   void wake_those_in_the_way(std::span<SurfaceBody* const> bodies);
   void find_at_rest(std::span<SurfaceBody* const> bodies);
+  bool is_disturbed(SurfaceBody& sleeper, const BodyInStage& in_stage) const;
+  void see_what_is_near(SurfaceBody& sleeper, const BodyInStage& in_stage) const;
   template <typename Is>
   bool any_near(const BodyInStage& body, const Is& is) const;
   Touch& touch_of(const SurfaceBody& body, TouchedKind kind, const btCollisionObject& object);

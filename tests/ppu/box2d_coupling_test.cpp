@@ -5,12 +5,15 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <numeric>
 #include <optional>
 #include <ostream>
 #include <stdexcept>
+#include <utility>
+#include <vector>
 
 #include "soft_body_2d_scenes.h"
 #include "softcell/soft_bodies/state_hash.h"
@@ -390,6 +393,53 @@ TEST_P(Box2dSleep, FallsWhenTheFloorIsTakenAway) {
   EXPECT_LT(resting.body->centre_of_mass().y(), -1);
 }
 
+TEST_P(Box2dSleep, FallsWhateverTakesTheFloorAway) {
+  const std::vector<std::pair<const char*, std::function<void(b2Body&)>>> ways = {
+      {"destroyed", [](b2Body& floor) { floor.DestroyFixture(floor.GetFixtureList()); }},
+      {"disabled", [](b2Body& floor) { floor.SetEnabled(false); }},
+      {"a sensor", [](b2Body& floor) { floor.GetFixtureList()->SetSensor(true); }},
+      {"filtered",
+       [](b2Body& floor) {
+         b2Filter nobody;
+         nobody.maskBits = 0;
+         floor.GetFixtureList()->SetFilterData(nobody);
+       }},
+      {"lowered",
+       [](b2Body& floor) {
+         floor.SetTransform({0, -4}, 0);
+       }},
+      {"far away",
+       [](b2Body& floor) {
+         floor.SetTransform({500, 0}, 0);
+       }},
+      {"exchanged",  // most likely at the same place in memory
+       [](b2Body& floor) {
+         floor.DestroyFixture(floor.GetFixtureList());
+         b2PolygonShape flat;
+         flat.SetAsBox(10, 0.1f);
+         floor.CreateFixture(&flat, 0);
+       }},
+  };
+  for (const auto& [name, take_away] : ways) {
+    Resting resting(GetParam());
+    ASSERT_TRUE(resting.body->asleep());
+    const float before = resting.body->centre_of_mass().y();
+    take_away(*resting.floor);
+    resting.world.run(1);
+    EXPECT_LT(resting.body->centre_of_mass().y(), before - 0.5f) << name;
+  }
+}
+
+TEST_P(Box2dSleep, SleepsOnWhateverHappensToWhatItDoesNotTouch) {
+  Resting resting(GetParam());
+  b2Body* const far = resting.world.add_box({8, 3}, {1, 1});
+  ASSERT_TRUE(resting.body->asleep());
+  far->SetTransform({-8, 3}, 0);
+  far->DestroyFixture(far->GetFixtureList());
+  resting.world.run(0.1f);
+  EXPECT_TRUE(resting.body->asleep());
+}
+
 TEST_P(Box2dSleep, WakesWhenBodiesMayNoLongerSleep) {
   Resting resting(GetParam());
   ASSERT_TRUE(resting.body->asleep());
@@ -426,6 +476,34 @@ TEST_P(Box2dSleep, WhatTouchesSleepsTogether) {
   tower.world.run(0.1f);
   EXPECT_FALSE(tower.under->asleep());
   EXPECT_TRUE(tower.box->IsAwake());
+}
+
+TEST_P(Box2dSleep, FallsWhenTheBodyBelowIsTakenAway) {
+  using Bodies = Box2dSoftBodies;
+  const std::vector<std::pair<const char*, std::function<void(Bodies&, SoftBody<2>&)>>> ways = {
+      {"translate",
+       [](Bodies&, SoftBody<2>& under) {
+         under.translate({20, 0});
+       }},
+      {"reset",
+       [](Bodies&, SoftBody<2>& under) {
+         under.reset({20, 2});
+       }},
+      {"move_without_force",
+       [](Bodies&, SoftBody<2>& under) {
+         under.move_without_force(Eigen::Rotation2Df(0), {20, 0});
+       }},
+      {"set_filter", [](Bodies& all, SoftBody<2>& under) { all.set_filter(under, {.group = 2, .mask = 0}); }},
+  };
+  for (const auto& [name, take_away] : ways) {
+    Tower tower(GetParam());
+    tower.world.run(30);
+    ASSERT_TRUE(tower.under->asleep() && tower.over->asleep()) << name;
+    const float before = tower.over->centre_of_mass().y();
+    take_away(tower.world.soft, *tower.under);
+    tower.world.run(1);
+    EXPECT_LT(tower.over->centre_of_mass().y(), before - 0.4f) << name;
+  }
 }
 
 TEST_P(Box2dSleep, ARigidBodyThatMayNotSleepKeepsWhatItTouchesAwake) {

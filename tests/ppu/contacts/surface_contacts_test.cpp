@@ -9,6 +9,7 @@
 #include <random>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "contact_world.h"
@@ -360,6 +361,59 @@ TEST(SurfaceContacts, ASleeperFallsWhenTheBodyBelowIsTakenAway) {
     w.run(240);
     EXPECT_LT(upper.centre_of_mass().y(), 0.4f);
   }
+}
+
+TEST(SurfaceContacts, ASleeperFallsWhateverTakesTheFloorAway) {
+  btBoxShape small(btVector3(5, 0.1f, 5));
+  const std::vector<std::pair<const char*, std::function<void(ContactWorld&, btRigidBody&)>>> ways = {
+      {"removed", [](ContactWorld& w, btRigidBody& floor) { w.world.removeRigidBody(&floor); }},
+      {"filtered",
+       [](ContactWorld& w, btRigidBody& floor) {
+         w.world.removeRigidBody(&floor);
+         w.world.addRigidBody(&floor, btBroadphaseProxy::StaticFilter, 0);
+       }},
+      {"filtered in place",
+       [](ContactWorld&, btRigidBody& floor) { floor.getBroadphaseHandle()->m_collisionFilterMask = 0; }},
+      {"another shape", [&](ContactWorld&, btRigidBody& floor) { floor.setCollisionShape(&small); }},
+      {"smaller",
+       [](ContactWorld&, btRigidBody& floor) {
+         floor.getCollisionShape()->setLocalScaling({1, 0.1f, 1});
+       }},
+      {"a trigger volume",
+       [](ContactWorld&, btRigidBody& floor) {
+         floor.setCollisionFlags(floor.getCollisionFlags() | btCollisionObject::CF_NO_CONTACT_RESPONSE);
+       }},
+      {"far away",
+       [](ContactWorld& w, btRigidBody& floor) {
+         floor.getWorldTransform().setOrigin({500, -1, 0});
+         w.world.updateSingleAabb(&floor);
+       }},
+  };
+  for (const auto& [name, take_away] : ways) {
+    ContactWorld w;
+    btRigidBody& floor = w.add_floor();
+    w.bodies.let_sleep(SleepSettings{});
+    const SoftBody<3>& body = w.add(cube(0.4f, 0.1f), settings_of(0.1f, 0.6f, 0.4f), {0, 0.2f, 0});
+    w.run(240);
+    ASSERT_TRUE(body.asleep());
+    take_away(w, floor);
+    w.run(30);
+    EXPECT_LT(body.bounds().low.y(), -0.5f) << name;
+  }
+}
+
+TEST(SurfaceContacts, ASleeperSleepsOnWhenSomethingFarIsRemoved) {
+  ContactWorld w;
+  w.add_floor();
+  btRigidBody& far = w.add(std::make_unique<btBoxShape>(btVector3(1, 1, 1)), 0, {8, 1, 0});
+  w.add(std::make_unique<btBoxShape>(btVector3(1, 1, 1)), 0, {-8, 1, 0});  // comes to its place in the list
+  w.bodies.let_sleep(SleepSettings{});
+  const SoftBody<3>& body = w.add(cube(0.4f, 0.1f), settings_of(0.1f, 0.6f, 0.4f), {0, 0.2f, 0});
+  w.run(240);
+  ASSERT_TRUE(body.asleep());
+  w.world.removeRigidBody(&far);
+  w.run(10);
+  EXPECT_TRUE(body.asleep());
 }
 
 /// Sleepers of different sizes share what says that nothing moves them.

@@ -175,8 +175,8 @@ class Box2dSoftBodies {
 
   /// Lets bodies at rest sleep, or never (std::nullopt, the default). Bodies that touch each other or are connected by
   /// joints fall asleep together, soft ones and rigid ones; each of them must be slow and allowed to sleep. A sleeping body
-  /// wakes when something that moves comes to it, when what it lay on is removed or moved, when gravity changes, when its user
-  /// changes it, and when Box2D wakes one of its circles.
+  /// wakes when something that moves comes to it, when what it lay on is removed, moved, disabled, made a sensor or changed in
+  /// shape or filter, when gravity changes, when its user changes it, and when Box2D wakes one of its circles.
   void let_sleep(const std::optional<SleepSettings>& settings);
 
   std::size_t size() const;                                ///< number of soft bodies

@@ -172,8 +172,10 @@ class BulletSoftBodies {
   /// the bodies that they press on. With spheres each body falls asleep alone, and bodies that lean on each other may keep each other awake.
   ///
   /// A sleeping body wakes when something that moves touches it or, with surfaces, reaches its box; when gravity changes; when its user
-  /// changes it; and when another soft body of this object, on which it may have lain, is changed or removed. Removing a rigid body, or a
-  /// soft body of another BulletSoftBodies, wakes nothing. Wake what rested on it yourself: a soft body by add_velocity({0, 0, 0}).
+  /// changes it; and when another soft body of this object, on which it may have lain, is changed or removed. With surfaces it also wakes
+  /// when an object near it is moved, removed or made a trigger volume, or gets another shape, size, group or mask. Not so with spheres, nor
+  /// for a soft body of another BulletSoftBodies, nor when points within a shape change that keeps its box: wake what rested on these
+  /// yourself, a soft body by add_velocity({0, 0, 0}).
   void let_sleep(const std::optional<SleepSettings>& settings);
 
   /// Appends the contacts at which soft bodies that touch with their surfaces pressed on something in the last substep.
