@@ -22,6 +22,7 @@
 #include "ppu/bullet/processor_time.h"
 #include "ppu/bullet/sphere_body.h"
 #include "ppu/bullet/surface_contacts.h"
+#include "ppu/contacts/crushed_cells.h"
 #include "ppu/contacts/piece_sides.h"
 #include "ppu/surfaces/way_in_box.h"
 #include "softcell/base/assert.h"
@@ -427,7 +428,14 @@ std::optional<SoftRayHit> BulletSoftBodies::cast_ray(const Eigen::Vector3f& from
 }
 
 CrushedCellCount BulletSoftBodies::crushed_cells() const {
-  return impl_->surfaces ? impl_->surfaces->crushed_cells() : CrushedCellCount{};
+  CrushedCellCount all;
+  for (const SurfaceBody* const body : impl_->with_surfaces) {
+    const CrushedCellCount of_body =
+        count_crushed_cells(body->soft().model().lattice(), body->soft().positions());
+    all.crushed += of_body.crushed;
+    all.inside_out += of_body.inside_out;
+  }
+  return all;
 }
 
 SoftBodyTimes BulletSoftBodies::times() const { return impl_->times; }

@@ -51,8 +51,6 @@ class SurfaceContacts {
   /// Appends the contacts of the last substep that press.
   void append_contacts(std::vector<Contact>& contacts) const;
 
-  CrushedCellCount crushed_cells() const { return stage_.crushed_cells(); }
-
   /// Whether events are kept from the next substep on.
   void watch(bool events);
   /// What has begun, gone on or ended since the last call.

@@ -72,7 +72,6 @@ void ContactStage::take_over(std::span<const BodyInStage> bodies, float step) {
   bodies_.resize(bodies.size());
   cells_.resize(bodies.size());
   is_crushed_.resize(bodies.size());
-  crushed_ = {};
   // Before the first body points into it.
   for (const BodyInStage& body : bodies)
     nothing_moves_.resize(std::max(nothing_moves_.size(), body.positions.size()));
@@ -97,8 +96,6 @@ void ContactStage::take_over(std::span<const BodyInStage> bodies, float step) {
     bool velocities_changed = false;
     if (!body.asleep) {
       velocities_changed = crushed_cells_.hold(body, step);
-      crushed_.crushed += crushed_cells_.count();
-      crushed_.inside_out += crushed_cells_.inside_out();
       is_crushed_[i] = crushed_cells_.count() > 0;
     }
     body.travel.setZero();

@@ -92,9 +92,6 @@ class ContactStage {
   /// Bodies have other numbers from now on.
   void forget_who_presses() { pressed_.clear(); }
 
-  /// Of the last step, of all bodies that are awake.
-  CrushedCellCount crushed_cells() const { return crushed_; }
-
   ContactSettings settings;
   /// Who finds and solves what he can; null: this thread does everything. Outlives the steps.
   ContactWorker* worker = nullptr;
@@ -202,7 +199,6 @@ class ContactStage {
   std::vector<std::vector<std::uint32_t>> touched_;  // of each body: cells, ascending
   CrushedCells crushed_cells_;
   SharpContacts sharp_contacts_;
-  CrushedCellCount crushed_;
   std::vector<bool> is_crushed_;     // of each body: it has crushed cells
   std::vector<float> moved_by_all_;  // of each particle that presses, by an impulse of 1 at each point
   std::vector<Press> presses_;

@@ -42,8 +42,13 @@ Edges edges_of(const Place& place) {
   return edges;
 }
 
+Edges edges_in(std::span<const Vector3f> positions, float spacing,
+               const std::array<std::uint32_t, 8>& corners) {
+  return edges_of([&](unsigned k) -> Vector3f { return positions[corners[k]] / spacing; });
+}
+
 Edges edges_at_beginning(const ContactBody& body, const std::array<std::uint32_t, 8>& corners) {
-  return edges_of([&](unsigned k) -> Vector3f { return body.positions[corners[k]] / body.spacing(); });
+  return edges_in(body.positions, body.spacing(), corners);
 }
 
 /// By how much the volume grows with each corner's place, in cells.
@@ -77,6 +82,18 @@ void grow(std::vector<Vector3f>& values, float per_value, const std::array<std::
 float volume_of_cell(const ContactBody& body, std::uint32_t cell) {
   SC_ASSERT(cell < body.lattice().corners.size(), "cell {} of {}", cell, body.lattice().corners.size());
   return edges_at_beginning(body, body.lattice().corners[cell]).volume();
+}
+
+CrushedCellCount count_crushed_cells(const Lattice<3>& lattice, std::span<const Vector3f> positions) {
+  SC_ASSERT(positions.size() == lattice.particles.size(), "{} positions of {} particles", positions.size(),
+            lattice.particles.size());
+  CrushedCellCount count;
+  for (const auto& corners : lattice.corners) {
+    const float volume = edges_in(positions, lattice.spacing, corners).volume();
+    if (volume < kLeastVolume) ++count.crushed;
+    if (volume < 0) ++count.inside_out;
+  }
+  return count;
 }
 
 /// Where particles would be, in cells.

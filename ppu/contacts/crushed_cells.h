@@ -8,9 +8,11 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "ppu/contacts/contact_body.h"
+#include "softcell/soft_bodies/contact.h"
 
 namespace softcell::ppu {
 
@@ -18,6 +20,10 @@ inline constexpr float kLeastVolume = 0.5f;  ///< of rest: what is below it is c
 
 /// Of its volume at rest, at the substep's beginning; below 0 inside out.
 float volume_of_cell(const ContactBody& body, std::uint32_t cell);
+
+/// Of a body that is in no substep.
+/// @param positions  of the lattice's particles
+CrushedCellCount count_crushed_cells(const Lattice<3>& lattice, std::span<const Eigen::Vector3f> positions);
 
 /// Used by one thread. Allocates when there are more particles, or more crushed cells, than ever before.
 class CrushedCells {
@@ -28,7 +34,7 @@ class CrushedCells {
   /// @return      whether velocities have changed
   bool hold(ContactBody& body, float step);
 
-  /// Of the last hold(): cells that are crushed at the substep's beginning.
+  /// Of the last hold(): cells that are crushed at the substep's beginning and would be at its end.
   std::uint32_t count() const { return count_; }
   /// Of them: those that are inside out.
   std::uint32_t inside_out() const { return inside_out_; }

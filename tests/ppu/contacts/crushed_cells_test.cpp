@@ -105,6 +105,29 @@ TEST(CrushedCells, AreNotPressedFurther) {
   }
 }
 
+/// Crushed cells that are held where they are count as well as those that are pressed on.
+TEST(CrushedCells, AreCountedWhileAPlateHoldsThem) {
+  ContactWorld w;
+  w.add_floor();
+  const SoftBody<3>& body =
+      w.add(make_box({0.6f, 0.3f, 0.6f}, 0.1f), settings_of(0.1f, 0.1f, 0.3f), {0, 0.15f, 0});
+  w.add(std::make_unique<btBoxShape>(btVector3(0.5f, 0.1f, 0.5f)), 30 * body.model().mass(), {0, 0.45f, 0});
+  std::size_t most = 0;
+  for (int frame = 0; frame < 240; ++frame) {
+    w.run(1);
+    std::size_t crushed = 0, inside_out = 0;
+    for (std::size_t cell = 0; cell < body.model().lattice().cells.size(); ++cell) {
+      crushed += volume_of(body, cell) < 0.5f ? 1 : 0;
+      inside_out += volume_of(body, cell) < 0 ? 1 : 0;
+    }
+    ASSERT_NEAR(static_cast<double>(w.bodies.crushed_cells().crushed), static_cast<double>(crushed), 1)
+        << frame;
+    ASSERT_EQ(w.bodies.crushed_cells().inside_out, inside_out) << frame;
+    most = std::max(most, crushed);
+  }
+  EXPECT_GT(most, body.model().lattice().cells.size() / 2);
+}
+
 /// Four boxes fall on one, in a shaft that is as wide as they are.
 /// @return  how many cells are inside out in each frame of the third second
 std::ptrdiff_t stay_inside_out_in_a_shaft(SolverFactory* solvers, std::size_t& most_reported) {

@@ -206,7 +206,7 @@ class BulletSoftBodies {
 
   SoftBodyTimes times() const;  ///< since the construction
 
-  /// Counts crushed cells at the beginning of the last substep, of bodies that were awake and touch with their surfaces.
+  /// Counts the cells, of bodies that touch with their surfaces, that are crushed as the bodies are now, which it looks up in each call.
   /// softcell keeps crushed cells from being pressed further and pushes them back. If there are many for long, a body is
   /// too soft or too light for what lies on it.
   CrushedCellCount crushed_cells() const;

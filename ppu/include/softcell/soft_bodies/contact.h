@@ -34,7 +34,7 @@ struct CollisionFilter {
   }
 };
 
-/// How many cells contacts have crushed.
+/// How many cells are crushed, by contacts or otherwise.
 struct CrushedCellCount {
   /// Cells with less than half of their volume at rest, including those that are turned inside out.
   std::size_t crushed = 0;
