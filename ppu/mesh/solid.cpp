@@ -8,39 +8,14 @@
 
 #include "ppu/mesh/position_numbers.h"
 #include "ppu/numbers/disjoint_sets.h"
+#include "ppu/numbers/line_along_x.h"
 #include "ppu/numbers/sorted_lists.h"
 #include "softcell/base/assert.h"
 
 namespace softcell::ppu {
-namespace {
 
 using Eigen::Vector3d;
 using Eigen::Vector3f;
-
-/// Twice the area, of a line along x: above 0 with the point left of the way from a to b, as seen against x. The same but for its
-/// sign for the way back, however it is rounded: both triangles of an edge agree on which of them a line meets.
-double area_beside(const Vector3d& a, const Vector3d& b, double y, double z) {
-  const bool swapped = std::pair(b.y(), b.z()) < std::pair(a.y(), a.z());
-  const Vector3d &from = swapped ? b : a, &to = swapped ? a : b;
-  const double area = (to.y() - from.y()) * (z - from.z()) - (to.z() - from.z()) * (y - from.y());
-  return swapped ? -area : area;
-}
-
-/// How often the edges of a triangle go round a point, across x: 1 or -1 inside, by the triangle's sense, else 0.
-int turns(const std::array<Vector3d, 3>& triangle, double y, double z) {
-  int sum = 0;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const Vector3d &a = triangle[k], &b = triangle[(k + 1) % 3];
-    const bool a_is_above = a.z() > z, b_is_above = b.z() > z;
-    if (a_is_above == b_is_above) continue;
-    const double area = area_beside(a, b, y, z);
-    if (b_is_above && area > 0) ++sum;
-    if (a_is_above && area < 0) --sum;
-  }
-  return sum;
-}
-
-}  // namespace
 
 Solid::Solid(const TriangleMesh& mesh) {
   SC_ASSERT(!mesh.positions.empty(), "{} triangles without corners", mesh.triangles.size());
@@ -118,11 +93,8 @@ bool Solid::contains(const Vector3f& point) const {
   int winding = 0;
   for (std::uint32_t k = begin_[i]; k < begin_[i + 1]; ++k) {
     const auto& t = triangles_[items_[k]];
-    const int sense = turns(t, y, z);
-    if (sense == 0) continue;
-    const Vector3d normal = (t[1] - t[0]).cross(t[2] - t[0]);
-    const double at = t[0].x() - (normal.y() * (y - t[0].y()) + normal.z() * (z - t[0].z())) / normal.x();
-    if (at > x) winding += sense;
+    const int sense = turns_around(t, y, z);
+    if (sense != 0 && place_in(t, y, z) > x) winding += sense;
   }
   return winding != 0;
 }

@@ -8,6 +8,7 @@
 
 #include "ppu/numbers/box_around.h"
 #include "ppu/numbers/cross.h"
+#include "ppu/numbers/line_along_x.h"
 #include "ppu/numbers/share_of_segment.h"
 #include "ppu/surfaces/contact_surface.h"
 #include "ppu/surfaces/flat_layer.h"
@@ -60,6 +61,36 @@ bool is_sliver(const FaceOf<3>& triangle) {
   for (std::size_t i = 0; i < 3; ++i)
     longest = std::max(longest, (triangle[(i + 1) % 3] - triangle[i]).squaredNorm());
   return normal_of(triangle).norm() <= kNarrow * longest;
+}
+
+/// Whether a line along an axis meets a box.
+template <int kDimension>
+bool is_beside(const Bounds<kDimension>& box, int axis, const Eigen::Vector<float, kDimension>& point) {
+  for (int d = 0; d < kDimension; ++d)
+    if (d != axis && (point[d] < box.low[d] || point[d] > box.high[d])) return false;
+  return true;
+}
+
+/// How often a face goes round a line along an axis: 1 or -1, or 0 where it does not meet it. Faces beside each other agree on which of them it
+/// meets. @param ahead  whether it does so beyond the point
+int turns_of(const FaceOf<2>& edge, int axis, const Vector2f& point, bool& ahead) {
+  const int up = 1 - axis;
+  const bool a_is_above = edge[0][up] > point[up], b_is_above = edge[1][up] > point[up];
+  if (a_is_above == b_is_above) return 0;
+  const Eigen::Vector2d low = edge[a_is_above ? 1 : 0].cast<double>(), p = point.cast<double>(),
+                        along = edge[a_is_above ? 0 : 1].cast<double>() - low;
+  ahead = along[axis] * (p[up] - low[up]) > (p[axis] - low[axis]) * along[up];
+  return b_is_above ? 1 : -1;
+}
+int turns_of(const FaceOf<3>& triangle, int axis, const Vector3f& point, bool& ahead) {
+  const auto turned = [&](const Vector3f& v) {
+    return Vector3f(v[axis], v[(axis + 1) % 3], v[(axis + 2) % 3]).cast<double>().eval();
+  };
+  const std::array<Eigen::Vector3d, 3> corners{turned(triangle[0]), turned(triangle[1]), turned(triangle[2])};
+  const Eigen::Vector3d p = turned(point);
+  const int turns = turns_around(corners, p.y(), p.z());
+  if (turns != 0) ahead = place_in(corners, p.y(), p.z()) > p.x();
+  return turns;
 }
 
 /// In proportion to the volume between the origin and a face; negative where it is seen from behind.
@@ -144,15 +175,13 @@ SurfaceQuery<kDimension>::SurfaceQuery(std::vector<Face> faces) {
     for (const Vector& corner : faces[i])
       if (!corner.allFinite())
         throw std::runtime_error("a soft body's surface has positions that are not finite numbers");
-    if (is_sliver(faces[i])) continue;
-    faces_.push_back(faces[i]);
     numbers_.push_back(i);
-    volume += volume_below(faces[i]);
+    is_narrow_.push_back(is_sliver(faces[i]));
+    if (!is_narrow_[i]) volume += volume_below(faces[i]);
   }
-  if (faces_.empty()) {  // of a body that is a line, or a point
-    faces_ = std::move(faces);
-    for (std::uint32_t i = 0; i < faces_.size(); ++i) numbers_.push_back(i);
-  }
+  faces_ = std::move(faces);
+  if (std::ranges::find(is_narrow_, false) == is_narrow_.end())  // of a body that is a line, or a point
+    is_narrow_.assign(faces_.size(), false);
   if (volume < 0) outwards_ = -1;
   nodes_.resize(1);
   build(0, 0, static_cast<std::uint32_t>(faces_.size()));
@@ -189,9 +218,15 @@ void SurfaceQuery<kDimension>::build(std::uint32_t node, std::uint32_t first, st
   });
   std::vector<Face> faces;
   std::vector<std::uint32_t> numbers;
-  for (const std::uint32_t i : order) faces.push_back(faces_[i]), numbers.push_back(numbers_[i]);
+  std::vector<bool> is_narrow;
+  for (const std::uint32_t i : order) {
+    faces.push_back(faces_[i]);
+    numbers.push_back(numbers_[i]);
+    is_narrow.push_back(is_narrow_[i]);
+  }
   std::copy(faces.begin(), faces.end(), faces_.begin() + first);
   std::copy(numbers.begin(), numbers.end(), numbers_.begin() + first);
+  std::copy(is_narrow.begin(), is_narrow.end(), is_narrow_.begin() + first);
   const auto children = static_cast<std::uint32_t>(nodes_.size());
   nodes_.resize(nodes_.size() + 2);
   nodes_[node] = {box, children, 0};
@@ -234,6 +269,7 @@ std::optional<SurfaceHit<kDimension>> SurfaceQuery<kDimension>::cast_ray(const V
   visit([&](const Bounds<kDimension>& box) { return entry_of(box, from, along); },
         [&] { return std::min(best, 1.0f); },
         [&](std::uint32_t i) {
+          if (is_narrow_[i]) return;
           const float share = share_of(faces_[i], from, along);
           // Of equal ones that with the lower number.
           if (share < best || (share == best && share <= 1 && numbers_[i] < numbers_[best_face]))
@@ -252,6 +288,7 @@ typename SurfaceQuery<kDimension>::Nearest SurfaceQuery<kDimension>::nearest(con
   visit([&](const Bounds<kDimension>& box) { return square_of_distance(box, point); },
         [&] { return best.square * kEqual; },
         [&](std::uint32_t i) {
+          if (is_narrow_[i]) return;
           const Vector position = nearest_point(faces_[i], point), off = point - position;
           const float square = off.squaredNorm();
           if (square > best.square * kEqual) return;
@@ -264,14 +301,40 @@ typename SurfaceQuery<kDimension>::Nearest SurfaceQuery<kDimension>::nearest(con
 }
 
 template <int kDimension>
-float SurfaceQuery<kDimension>::Nearest::distance() const {
-  return behind ? -std::sqrt(square) : std::sqrt(square);
+typename SurfaceQuery<kDimension>::Turns SurfaceQuery<kDimension>::turns_along(int axis,
+                                                                               const Vector& point) const {
+  Turns turns;
+  visit([&](const Bounds<kDimension>& box) { return is_beside(box, axis, point) ? 0.0f : kEndless; },
+        [] { return 0.0f; },
+        [&](std::uint32_t i) {
+          bool ahead = false;
+          const int turn = turns_of(faces_[i], axis, point, ahead);
+          turns.all += turn;
+          if (ahead) turns.ahead += turn;
+        });
+  return turns;
+}
+
+/// The nonzero winding rule, as Solid has it: of a surface that reaches into itself the nearest face may look at a point that is inside. A
+/// line that the surface does not go round as often forwards as backwards meets a part that is not closed, and says nothing; so two must
+/// agree. Where none do, the nearest face decides.
+template <int kDimension>
+bool SurfaceQuery<kDimension>::is_inside(const Vector& point, const Nearest& nearest) const {
+  if ((point.array() < bounds().low.array()).any() || (point.array() > bounds().high.array()).any())
+    return false;
+  int inside = 0, outside = 0;
+  for (int axis = 0; axis < kDimension && inside < 2 && outside < 2; ++axis) {
+    const Turns turns = turns_along(axis, point);
+    if (turns.all == 0) ++(turns.ahead != 0 ? inside : outside);
+  }
+  return inside != outside ? inside > outside : nearest.behind;
 }
 
 template <int kDimension>
 float SurfaceQuery<kDimension>::distance(const Vector& point) const {
   SC_ASSERT(point.allFinite(), "the distance of ({}, {})", point.x(), point.y());
-  return nearest(point).distance();
+  const Nearest found = nearest(point);
+  return is_inside(point, found) ? -std::sqrt(found.square) : std::sqrt(found.square);
 }
 
 /// Goes on by as much as is free, which is never too far.
@@ -283,11 +346,13 @@ std::optional<SurfaceHit<kDimension>> SurfaceQuery<kDimension>::cast_sphere(cons
   const Vector along = to - from;
   const float length = along.norm(), near = 1e-4f * radius;
   const float least_step = 1e-3f * radius;  // of a way that runs along a surface
+  if (const Nearest found = nearest(from); is_inside(from, found))
+    return hit_of(found.face, 0, found.position);
   float done = 0;
   for (;;) {
     const Vector centre = length > 0 ? Vector(from + done / length * along) : from;
     const Nearest found = nearest(centre);
-    const float distance = found.distance();
+    const float distance = std::sqrt(found.square);  // it comes from outside
     if (distance - radius <= near) {
       SurfaceHit hit = hit_of(found.face, length > 0 ? done / length : 0, found.position);
       if (distance > 0) hit.normal = (centre - found.position) / distance;

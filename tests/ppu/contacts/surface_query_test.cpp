@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "contact_world.h"
+#include "ppu/mesh/solid.h"
 #include "ppu/surfaces/triangle_distance.h"
 #include "softcell/spe_bodies/spe_runtime.h"
 
@@ -126,6 +127,112 @@ TEST(SurfaceQuery, IsTheSameAsLookingAtEachTriangle) {
     ++hits;
   }
   EXPECT_GT(hits, 50);
+}
+
+/// As it is drawn.
+TriangleMesh drawn_mesh(const SoftBody<3>& body) {
+  TriangleMesh mesh = body.model().mesh();
+  mesh.positions = ContactWorld::drawn(body);
+  return mesh;
+}
+
+/// A cube whose upper half has been pressed through its lower half.
+SoftBody<3> folded_cube() {
+  SoftBody<3> body = unit_cube();
+  for (std::size_t i = 0; i < body.positions().size(); ++i) {
+    const Vector3f x = body.position(i);
+    body.set_particle(i, {x.x(), x.y() > 0.01f ? -0.8f * x.y() : x.y(), x.z()}, {0, 0, 0});
+  }
+  return body;
+}
+
+/// A crushed one: each particle is anywhere within a cell of where it was.
+SoftBody<3> crumpled_cube() {
+  SoftBody<3> body = unit_cube();
+  std::mt19937 engine(11);
+  std::uniform_real_distribution<float> coordinate(-0.25f, 0.25f);
+  for (std::size_t i = 0; i < body.positions().size(); ++i)
+    body.set_particle(i,
+                      body.position(i) + Vector3f(coordinate(engine), coordinate(engine), coordinate(engine)),
+                      {0, 0, 0});
+  return body;
+}
+
+/// Parts that reach into each other, and bodies that reach into themselves.
+TEST(SurfaceQuery, KnowsWhatIsInsideWhereTheSurfaceLiesWithinTheBody) {
+  const auto at_rest = [](const TriangleMesh& mesh, float cell) {
+    return SoftBody<3>(make_soft_body_model(mesh, settings_of(cell)), Vector3f(0.1f, 0.2f, 0.3f));
+  };
+  const SoftBody<3> bodies[] = {at_rest(make_penguin(0.9f), 0.1f), at_rest(make_car(2), 0.1f), unit_cube(),
+                                folded_cube(), crumpled_cube()};
+  for (const SoftBody<3>& body : bodies) {
+    const SurfaceQuery surface(body);
+    const Solid solid(drawn_mesh(body));
+    std::mt19937 engine(7);
+    std::uniform_real_distribution<float> share(-0.05f, 1.05f);
+    int inside = 0;
+    for (int i = 0; i < 2000; ++i) {
+      const Bounds<3>& box = surface.bounds();
+      const Vector3f point =
+          box.low + Vector3f(share(engine), share(engine), share(engine)).cwiseProduct(box.high - box.low);
+      const float distance = surface.distance(point);
+      if (std::abs(distance) < 1e-4f) continue;
+      ASSERT_EQ(distance < 0, solid.contains(point))
+          << body.model().particles() << " particles, " << point.transpose();
+      inside += distance < 0 ? 1 : 0;
+    }
+    EXPECT_GT(inside, 200);
+  }
+}
+
+/// @return  the first share of the way, in steps, at which a triangle is within the radius; beyond 1: nowhere
+double first_touch(const TriangleMesh& mesh, const Vector3f& from, const Vector3f& to, double radius) {
+  constexpr int kSteps = 400;
+  for (int i = 0; i <= kSteps; ++i) {
+    const double share = static_cast<double>(i) / kSteps;
+    const Eigen::Vector3d centre = from.cast<double>() + share * (to - from).cast<double>();
+    for (const auto& t : mesh.triangles) {
+      const std::array<Eigen::Vector3d, 3> corners = {mesh.positions[t[0]].cast<double>(),
+                                                      mesh.positions[t[1]].cast<double>(),
+                                                      mesh.positions[t[2]].cast<double>()};
+      if ((nearest_point<double>(corners, centre) - centre).norm() <= radius) return share;
+    }
+  }
+  return 2;
+}
+
+TEST(SurfaceQuery, AMovedSphereStopsWhereItTouchesPiecesOfABody) {
+  ContactWorld w({0, 0, 0});
+  SoftBody<3>& body =
+      w.add(make_box({0.6f, 0.6f, 0.6f}, 0.2f), {.cell_size = 0.12f, .fracture = Fracture{}}, {0, 1, 0});
+  std::mt19937 random(5);
+  const auto number = [&](float half) { return std::uniform_real_distribution<float>(-half, half)(random); };
+  const auto vector = [&](float half) { return Vector3f(number(half), number(half), number(half)); };
+  for (int i = 0; i < 4; ++i) w.bodies.cut(body, Cut::plane(Vector3f(0, 1, 0) + vector(0.2f), vector(1)));
+  ASSERT_GT(w.bodies.size(), 1u);
+  int hits = 0, misses = 0;
+  for (std::size_t i = 0; i < w.bodies.size(); ++i) {
+    const TriangleMesh mesh = drawn_mesh(w.bodies[i]);
+    const SurfaceQuery query(w.bodies[i]);
+    for (int k = 0; k < 40; ++k) {
+      const Vector3f middle = 0.5f * (query.bounds().low + query.bounds().high);
+      const Vector3f aside = vector(1).normalized();
+      const Vector3f from = middle + 1.2f * aside, to = middle - 1.2f * aside + vector(1);
+      const float radius = k % 2 == 0 ? 0.01f : 0.1f;
+      const double touch = first_touch(mesh, from, to, radius),
+                   beyond = first_touch(mesh, from, to, 0.98f * radius);
+      const auto hit = query.cast_sphere(from, to, radius);
+      if (hit) {
+        EXPECT_NEAR(hit->share, touch, 0.005f) << "piece " << i << ", sphere " << k;
+        ++hits;
+      } else {
+        EXPECT_GT(beyond, 1) << "piece " << i << ", sphere " << k;
+        ++misses;
+      }
+    }
+  }
+  EXPECT_GT(hits, 20);
+  EXPECT_GT(misses, 20);
 }
 
 TEST(SurfaceQuery, OfABodyWithoutAMeshIsTheLatticesBoundary) {

@@ -58,7 +58,8 @@ class SurfaceQuery {
   /// share is 0. The normal points from the surface to the sphere's centre. @param radius  metres, above 0
   std::optional<Hit> cast_sphere(const Vector& from, const Vector& to, float radius) const;
 
-  /// Metres from a point to the surface; below 0 inside the body.
+  /// Metres from a point to the nearest place of what is drawn; below 0 inside the body. Where parts of the surface reach into each other, or
+  /// a body is crushed, inside is what the surface goes around as often as not in one direction; the nearest place may lie within.
   float distance(const Vector& point) const;
 
   /// The box around the surface, metres.
@@ -77,8 +78,10 @@ class SurfaceQuery {
     bool behind = false;  ///< the point is behind the face
     std::uint32_t face = 0;
     Vector position = Vector::Zero();
-
-    float distance() const;  ///< metres, below 0 behind it
+  };
+  /// How often the surface goes round a line along an axis, by its sense: in front of a point, and in all.
+  struct Turns {
+    int ahead = 0, all = 0;
   };
 
   explicit SurfaceQuery(std::vector<Face> faces);
@@ -87,10 +90,13 @@ class SurfaceQuery {
   void visit(const Cost& cost, const Limit& limit, const Work& work) const;
   void build(std::uint32_t node, std::uint32_t first, std::uint32_t count);
   Nearest nearest(const Vector& point) const;
+  Turns turns_along(int axis, const Vector& point) const;
+  bool is_inside(const Vector& point, const Nearest& nearest) const;
   Hit hit_of(std::uint32_t face, float share, const Vector& position) const;
 
   std::vector<Face> faces_;             ///< in the order of the tree
   std::vector<std::uint32_t> numbers_;  ///< of these in the surface
+  std::vector<bool> is_narrow_;         ///< of these: which way they look is rounding
   std::vector<Node> nodes_;             ///< the root first
   float outwards_ = 1;                  ///< -1 of a surface whose faces look inwards
 };
