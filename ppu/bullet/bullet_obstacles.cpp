@@ -260,8 +260,11 @@ void BulletObstacles::begin(const btDiscreteDynamicsWorld& world, float step) {
   edges_used_ = triangles_used_ = 0;
   leaving_.clear();
   const btCollisionObjectArray& objects = world.getCollisionObjectArray();
+  // Trigger volumes are moved by the program, most without a velocity.
+  const bool wants_triggers = role_ == Objects::kTriggers;
   for (int i = 0; i < objects.size(); ++i)
-    if (is_under_way(*objects[i])) find_leaving(*objects[i]);
+    if (is_under_way(*objects[i]) || (wants_triggers && !objects[i]->hasContactResponse()))
+      find_leaving(*objects[i]);
 }
 
 void BulletObstacles::find_leaving(const btCollisionObject& object) {

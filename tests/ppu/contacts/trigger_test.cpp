@@ -172,6 +172,25 @@ TEST(TriggerVolumes, MeetBodiesThatSleepAndDoNotWakeThem) {
   EXPECT_TRUE(body.asleep());
 }
 
+/// Bullet's broad phase learns only later in a substep where the program has moved it.
+TEST(TriggerVolumes, MeetABodyInTheSubstepInWhichTheProgramHasMovedThem) {
+  Trigger hand(std::make_unique<btSphereShape>(0.2f), {5, 0, 0});
+  ContactWorld w({0, 0, 0});
+  w.world.addCollisionObject(&hand.object());
+  w.add(make_box({0.5f, 0.5f, 0.5f}, 0.125f), settings_of(0.125f), {0, 0, 0});
+  w.bodies.watch_contacts(true);
+  w.run(3, 1);
+  EXPECT_TRUE(w.bodies.poll_contact_events().empty());
+  for (const auto& [x, kind] :
+       {std::pair(0.1f, Kind::kBegin), std::pair(5.0f, Kind::kEnd), std::pair(-0.1f, Kind::kBegin)}) {
+    hand.move_to({x, 0, 0});
+    w.run(1, 1);
+    const std::vector<ContactEvent> events = w.bodies.poll_contact_events();
+    ASSERT_EQ(events.size(), 1u) << x;
+    EXPECT_EQ(events.front().kind, kind) << x;
+  }
+}
+
 TEST(TriggerVolumes, ObeyFiltersAndEndWhenABodyGoes) {
   Trigger deaf(box(2, 2, 2)), all(box(2, 2, 2));
   ContactWorld w({0, 0, 0});
