@@ -60,6 +60,12 @@ says(1 "softcell has no component 'bodies'; its components are[ \n]+spu,[ \n]+li
   ${CMAKE_COMMAND} -S ${SCRATCH}/wrong -B ${SCRATCH}/wrong/build -G ${GENERATOR} -DCMAKE_PREFIX_PATH=${prefix}
   -DCMAKE_CXX_COMPILER=${COMPILER})
 
+# Nothing of it can be linked without C++.
+file(WRITE ${SCRATCH}/c_only/CMakeLists.txt "cmake_minimum_required(VERSION 3.25)\nproject(c_only LANGUAGES C)\n"
+  "find_package(softcell REQUIRED COMPONENTS libspe2)\n")
+says(1 "softcell is written in C\\+\\+; enable it in this project, as in[ \n]+project\\(\\.\\.\\.[ \n]+LANGUAGES[ \n]+C[ \n]+CXX\\)\\."
+  ${CMAKE_COMMAND} -S ${SCRATCH}/c_only -B ${SCRATCH}/c_only/build -G ${GENERATOR} -DCMAKE_PREFIX_PATH=${prefix})
+
 # Optional ones that there are not, or that lack a library, are no reason to refuse the others.
 file(WRITE ${SCRATCH}/optional/CMakeLists.txt "cmake_minimum_required(VERSION 3.25)\nproject(optional LANGUAGES CXX)\n"
   "set(CMAKE_DISABLE_FIND_PACKAGE_assimp ON)\n"
