@@ -153,11 +153,13 @@ void AttachmentRecords<kDimension>::read(const spu::AttachLink& link,
                                          std::span<const spu::AttachPoint> points,
                                          std::span<const spu::AttachRow> rows) {
   using Vector = typename Rows::Vector;
-  Vector impulse = Vector::Zero();
-  const auto add = [&](const float(&of_record)[3]) { impulse += Vector::Map(of_record); };
-  for (const spu::AttachPoint& point : points) add(point.impulse);
-  for (const spu::AttachRow& row : rows) add(row.impulse);
-  rows_.state_.force = impulse / rows_.step_;
+  SC_ASSERT(points.size() + rows.size() >= rows_.rows_.size(), "{} points and {} rows of {}", points.size(),
+            rows.size(), rows_.rows_.size());
+  for (typename Rows::Row& row : rows_.rows_) row.impulse.setZero();
+  for (std::size_t i = 0; i < points.size(); ++i)
+    rows_.rows_[i / kColumn<kDimension>].impulse += Vector::Map(points[i].impulse);
+  for (std::size_t i = 0; i < rows.size(); ++i) rows_.rows_[i].impulse += Vector::Map(rows[i].impulse);
+  rows_.state_.force = rows_.carried_impulse() / rows_.step_;
   rows_.broke_ = link.broke != 0;
 }
 

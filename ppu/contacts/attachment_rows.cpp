@@ -4,10 +4,12 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 #include <string>
 
+#include "ppu/numbers/turning.h"
 #include "softcell/base/assert.h"
 
 namespace softcell::ppu {
@@ -79,6 +81,47 @@ std::vector<Eigen::Vector<float, kDimension>> simplex() {
     return {{0, 2 * half}, {height, -half}, {-height, -half}};
   }
 }
+
+/// The patches of an attachment, as one body.
+template <int kDimension>
+class TurnedPatches {
+ public:
+  using Vector = Eigen::Vector<double, kDimension>;
+
+  void add(const AttachedBody<kDimension>& body, std::span<const std::uint32_t> particles) {
+    for (const std::uint32_t i : particles) {
+      const double mass = 1 / double{body.inverse_masses[i]};
+      const Vector position = body.positions[i].template cast<double>();
+      mass_ += mass;
+      sum_ += mass * position;
+      squares_ += mass * position * position.transpose();
+    }
+    patches_[count_++] = {&body, particles};
+  }
+  /// Gives them a spin, and no momentum. Particles on a line do not turn in three dimensions.
+  void turn(const turning::Axial<kDimension>& spin) const {
+    const Vector middle = sum_ / mass_;
+    const auto inertia = turning::inertia_of((squares_ - mass_ * middle * middle.transpose()).eval());
+    const turning::Axial<kDimension> omega = turning::turn_of(inertia, spin);
+    for (const auto& [body, particles] : std::span(patches_).first(count_))
+      for (const std::uint32_t i : particles) {
+        const Vector arm = body->positions[i].template cast<double>() - middle;
+        body->velocities[i] += turning::cross(omega, arm).template cast<float>();
+      }
+  }
+
+ private:
+  struct One {
+    const AttachedBody<kDimension>* body;
+    std::span<const std::uint32_t> particles;
+  };
+  std::array<One, 2> patches_{};
+  std::size_t count_ = 0;
+  double mass_ = 0;
+  Vector sum_ = Vector::Zero();
+  Eigen::Matrix<double, kDimension, kDimension> squares_ =
+      Eigen::Matrix<double, kDimension, kDimension>::Zero();
+};
 
 /// By the formulas for its size, which is known at compile time: a factorisation for all sizes takes ten times as long to compile.
 /// @pre there are 1 to kMost rows
@@ -608,6 +651,32 @@ void AttachmentRows<kDimension>::finish() {
   state_.force = carried_impulse() / step_;
   limit_pushes(a_, sides_.a);
   if (sides_.b != nullptr) limit_pushes(b_, *sides_.b);
+  take_back_spin();
+}
+
+template <int kDimension>
+std::span<const std::uint32_t> AttachmentRows<kDimension>::patch_of(const Side& side,
+                                                                    const Place& of_first_row) {
+  const std::span<const std::uint32_t> all = side.particle;
+  return of_first_row.count == 1 ? all : all.subspan(of_first_row.first, of_first_row.count);
+}
+
+/// A rope's impulse leads from end to end. What does not move takes spin as it takes momentum.
+template <int kDimension>
+void AttachmentRows<kDimension>::take_back_spin() {
+  const bool with_rigid = sides_.b == nullptr && sides_.rigid != nullptr && sides_.rigid->inverse_mass > 0;
+  const bool is_free = with_rigid || (sides_.b != nullptr && !sides_.b->asleep);
+  if (!gives_way() || settings_.kind == AttachmentKind::kRope || !is_free || sides_.a.asleep) return;
+  turning::Axial<kDimension> given = turning::cross(Eigen::Vector<double, kDimension>::Zero().eval(),
+                                                    Eigen::Vector<double, kDimension>::Zero().eval());
+  for (const Row& row : rows_) {
+    const Vector apart = a_.of(row.a, sides_.a.positions) - row.point;
+    given += turning::cross(apart.template cast<double>().eval(), row.impulse.template cast<double>().eval());
+  }
+  TurnedPatches<kDimension> patches;
+  patches.add(sides_.a, patch_of(a_, rows_.front().a));
+  if (sides_.b != nullptr) patches.add(*sides_.b, patch_of(b_, rows_.front().b));
+  patches.turn(-given);
 }
 
 template <int kDimension>

@@ -119,7 +119,12 @@ class AttachmentRows {
   bool is_direct() const { return is_direct_; }
   /// One iteration. @return  the largest error of velocity that a row had, squared (m/s)^2
   float iterate();
+  /// Behind the last one.
   void finish();
+  /// Part of finish(); the last part where a kernel has solved the rows. What gives way is stretched: its impulses lead past each other where
+  /// its ends also move across. The patches get the turn that takes this back, of what is attached to a rigid body the soft one alone.
+  void take_back_spin();
+  bool gives_way() const { return softness_ > 0; }
 
   /// Whether the last iteration of the last substep would have passed the break force.
   bool broke() const { return broke_; }
@@ -200,6 +205,8 @@ class AttachmentRows {
   void keep_below_break_force();
   void limit_pushes(const Side& side, const AttachedBody<kDimension>& body) const;
   Vector carried_impulse() const;
+  /// Those of a patch, each once.
+  static std::span<const std::uint32_t> patch_of(const Side& side, const Place& of_first_row);
 
   AttachmentSettings<kDimension> settings_;
   float length_ = 0;  // of a rope

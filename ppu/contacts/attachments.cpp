@@ -92,6 +92,16 @@ void Attachments<kDimension>::finish() {
   for (const Solved& solved : solved_) solved.rows->finish();
 }
 
+template <int kDimension>
+void Attachments<kDimension>::take_back_spin() {
+  for (const Solved& solved : solved_) solved.rows->take_back_spin();
+}
+
+template <int kDimension>
+bool Attachments<kDimension>::gives_way() const {
+  return std::ranges::any_of(solved_, [](const Solved& solved) { return solved.rows->gives_way(); });
+}
+
 template class Attachments<2>;
 template class Attachments<3>;
 

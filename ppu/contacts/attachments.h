@@ -59,6 +59,8 @@ class AttachmentSolver {
   /// What the kernel has made of these. In place of finish().
   virtual void read(std::size_t attachment, const spu::AttachLink& link,
                     std::span<const spu::AttachPoint> points, std::span<const spu::AttachRow> rows) = 0;
+  /// Behind read() of all, when velocities are as the kernel has left them.
+  virtual void take_back_spin() = 0;
 };
 
 /// Used by one thread. A coupling fills it before each substep.
@@ -87,6 +89,9 @@ class Attachments final : public AttachmentSolver<kDimension> {
             std::span<const spu::AttachRow> rows) override {
     AttachmentRecords<kDimension>(*solved_[attachment].rows).read(link, points, rows);
   }
+  void take_back_spin() override;
+  /// Whether one of them is compliant.
+  bool gives_way() const;
 
  private:
   struct Solved {

@@ -730,6 +730,7 @@ void ContactStage::solve_with_worker(std::span<ContactRigid> rigids, float step)
   if (!attachments_by_worker) return;
   worker->read(attach_units_.units());
   attach_units_.read(*attachments);
+  attachments->take_back_spin();
 }
 
 void ContactStage::take_from_worker() {

@@ -97,6 +97,13 @@ void FlatAttachments::finish() {
   raise();
 }
 
+void FlatAttachments::take_back_spin() {
+  if (!in_plane_.gives_way()) return;
+  lower();
+  in_plane_.take_back_spin();
+  raise();
+}
+
 /// Velocities and pushes as contacts have left them.
 void FlatAttachments::lower() {
   for (std::size_t i = 0; i < planes_.size(); ++i)

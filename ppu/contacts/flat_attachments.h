@@ -35,6 +35,7 @@ class FlatAttachments final : public AttachmentSolver<3> {
             std::span<const spu::AttachRow> rows) override {
     in_plane_.read(attachment, link, points, rows);
   }
+  void take_back_spin() override;
 
  private:
   /// A body of the stage in the plane: only its held particles are there.

@@ -240,6 +240,92 @@ TEST_P(SolvedBy, TwoFreeBodiesKeepTheirMomentum) {
   }
 }
 
+/// About the origin.
+Eigen::Vector3d spin_of(const SoftBody<3>& body) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < body.model().particles(); ++i)
+    sum += double{body.model().masses()[i]} *
+           body.position(i).cast<double>().cross(body.velocities()[i].cast<double>());
+  return sum;
+}
+Eigen::Vector3d spin_of(const btRigidBody& body) {
+  const Eigen::Matrix3d inertia = to_eigen(body.getInvInertiaTensorWorld()).cast<double>().inverse();
+  return to_eigen(body.getWorldTransform().getOrigin())
+                 .cast<double>()
+                 .cross(to_eigen(body.getLinearVelocity()).cast<double>()) /
+             double{body.getInvMass()} +
+         inertia * to_eigen(body.getAngularVelocity()).cast<double>();
+}
+
+/// What gives way is stretched, and its impulses lead past each other where it also moves across.
+TEST_P(SolvedBy, TwoFreeBodiesThatAreApartKeepTheirAngularMomentum) {
+  if (kSlowBuild && GetParam() == Who::kSpes) GTEST_SKIP() << "with sanitizers, which have the others";
+  for (const AttachmentKind kind : {AttachmentKind::kWeld, AttachmentKind::kHinge, AttachmentKind::kRope}) {
+    for (const float compliance : {0.0f, 1e-4f, 1e-3f, 1e-2f}) {
+      AttachedWorld w(GetParam(), {0, 0, 0});
+      SoftBody<3>& left = w.add(block({0.4f, 0.4f, 0.4f}), settings_of(kCell), {-0.4f, 0, 0});
+      SoftBody<3>& right = w.add(block({0.4f, 0.4f, 0.4f}), settings_of(kCell), {0.4f, 0, 0});
+      AttachmentSettings<3> settings{.kind = kind, .compliance = compliance};
+      if (kind == AttachmentKind::kHinge) settings.point = Vector3f(0, 0, 0);
+      w.bodies.attach(left, Patch<3>::of_surface({-0.2f, 0, 0}, 0.2f), right,
+                      Patch<3>::of_surface({0.2f, 0, 0}, 0.2f), settings);
+      left.add_velocity({0.3f, 1, 0.5f});
+      right.add_velocity({-0.3f, -1, -0.5f});
+      right.add_angular_velocity({1, 4, 2});
+      double size = 0;
+      for (const SoftBody<3>* const body : {&left, &right})
+        for (std::size_t i = 0; i < body->model().particles(); ++i)
+          size += double{body->model().masses()[i] * body->position(i).norm() * body->velocities()[i].norm()};
+      const Eigen::Vector3d before = spin_of(left) + spin_of(right);
+      w.run(500);
+      EXPECT_LT((spin_of(left) + spin_of(right) - before).norm(), 1e-5 * size)
+          << static_cast<int>(kind) << " that gives " << compliance << " m/N";
+    }
+  }
+}
+
+TEST_P(SolvedBy, AFreeBodyAndARigidOneThatAreApartKeepTheirAngularMomentum) {
+  if (kSlowBuild && GetParam() == Who::kSpes) GTEST_SKIP() << "with sanitizers, which have the others";
+  for (const AttachmentKind kind : {AttachmentKind::kWeld, AttachmentKind::kHinge, AttachmentKind::kRope}) {
+    for (const float compliance : {1e-4f, 1e-3f, 1e-2f}) {
+      AttachedWorld w(GetParam(), {0, 0, 0});
+      SoftBody<3>& body = w.add(block({0.4f, 0.4f, 0.4f}), settings_of(kCell), {-0.4f, 0, 0});
+      const float mass = body.model().mass();
+      btRigidBody& box = w.add(std::make_unique<btBoxShape>(btVector3(0.2f, 0.2f, 0.2f)), mass, {0.4f, 0, 0});
+      w.bodies.attach(body, Patch<3>::of_surface({-0.2f, 0, 0}, 0.2f), box,
+                      {.kind = kind, .compliance = compliance});
+      body.add_velocity({0.3f, 1, 0.5f});
+      box.setLinearVelocity({-0.3f, -1, -0.5f});
+      const double size = spin_of(body).norm() + spin_of(box).norm();
+      const Eigen::Vector3d before = spin_of(body) + spin_of(box);
+      w.run(500);
+      EXPECT_LT((spin_of(body) + spin_of(box) - before).norm(), 1e-5 * size)
+          << static_cast<int>(kind) << " that gives " << compliance << " m/N";
+    }
+  }
+}
+
+/// It hauls: each end comes nearer by a quarter of a cell in a substep at most, and bodies get no faster than that.
+TEST_P(SolvedBy, ARopeThatIsTooShortHauls) {
+  AttachedWorld w(GetParam(), {0, 0, 0});
+  SoftBody<3>& left = w.add(block({0.4f, 0.4f, 0.4f}), settings_of(kCell, 0.6f, 0.3f), {-1.2f, 0, 0});
+  SoftBody<3>& right = w.add(block({0.4f, 0.4f, 0.4f}), settings_of(kCell, 0.6f, 0.3f), {1.2f, 0, 0});
+  const AttachmentId rope = w.bodies.attach(left, Patch<3>::of_surface({-1, 0, 0}, 0.15f), right,
+                                            Patch<3>::of_surface({1, 0, 0}, 0.15f),
+                                            {.kind = AttachmentKind::kRope, .length = 0.5f});
+  constexpr float kMost = 0.25f * kCell;  // in a substep
+  float gap = w.bodies.attachment_ends(rope)->patch.x() - w.bodies.attachment_ends(rope)->other.x();
+  gap = std::abs(gap);
+  for (int i = 0; i < 120; ++i) {
+    w.run(1);
+    const float now = w.bodies.attachment(rope)->gap;
+    EXPECT_LT(gap - now, 2 * 1.1f * (2 * kMost)) << "two ends in two substeps, " << i;
+    gap = now;
+    EXPECT_LT(std::max(ContactWorld::fastest(left), ContactWorld::fastest(right)), kMost / kStep) << i;
+  }
+  EXPECT_LT(gap, 0.55f);
+}
+
 /// A cantilever: one body is held whole, the other sticks out from it.
 TEST_P(SolvedBy, AWeldOfTwoBodiesCarriesTorque) {
   AttachedWorld w(GetParam());

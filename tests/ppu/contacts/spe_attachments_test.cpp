@@ -165,6 +165,7 @@ std::size_t solve_on_spes(Scene& scene, SpeRuntime& spes) {
   sets.take();
   worker.read(units.units());
   units.read(scene.attachments);
+  scene.attachments.take_back_spin();
   return units.units().size();
 }
 
