@@ -6,6 +6,7 @@
 #include <future>
 #include <optional>
 #include <stdexcept>
+#include <string>
 #include <utility>
 
 #include "ppu/bodies/lost_momenta.h"
@@ -289,14 +290,29 @@ void SoftBody<kDimension>::set_rest_positions(std::span<const Vector> rest) {
   if (rest.size() != x_.size())
     throw std::runtime_error("a soft body of " + base::counted(x_.size(), "particle") + " was given " +
                              base::counted(rest.size(), "position") + " at rest");
-  std::vector<Eigen::Matrix<double, kDimension, 1>> exact;
-  for (const Vector& position : rest) {
+  for (const Vector& position : rest)
     if (!position.allFinite()) throw std::runtime_error("a soft body's rest shape is not finite");
-    exact.push_back(position.template cast<double>());
-  }
-  auto own = std::make_unique<RestShape>(*model_, exact);
-  own->shape = RestShape::shape_of(*own->flow, *model_->plan());
-  set_rest(std::move(own));
+  std::unique_ptr<RestShape> own = rest_of(rest);
+  if (const std::size_t bad = own->flow->cells_that_contacts_hold())
+    throw std::runtime_error(
+        "of a soft body's rest shape " + base::counted(bad, "cell") + " of " +
+        std::to_string(model_->lattice().cells.size()) +
+        " are flat, turned inside out or of less than half of the model's volume, which contacts would push "
+        "back in each step");
+  take_rest(std::move(own));
+}
+
+template <int kDimension>
+auto SoftBody<kDimension>::rest_of(std::span<const Vector> positions) const -> std::unique_ptr<RestShape> {
+  std::vector<Eigen::Matrix<double, kDimension, 1>> exact;
+  for (const Vector& position : positions) exact.push_back(position.template cast<double>());
+  return std::make_unique<RestShape>(*model_, exact);
+}
+
+template <int kDimension>
+void SoftBody<kDimension>::take_rest(std::unique_ptr<RestShape> rest) {
+  rest->shape = RestShape::shape_of(*rest->flow, *model_->plan());
+  set_rest(std::move(rest));
   ++revision_;
 }
 
@@ -365,7 +381,7 @@ void SoftBody<kDimension>::inherit_state(const SoftBody& whole, std::span<const 
   if (!whole.has_own_rest()) return;
   std::vector<Vector> rest;
   for (const std::uint32_t particle : particle_of) rest.push_back(whole.own_rest()[particle]);
-  set_rest_positions(rest);
+  take_rest(rest_of(rest));
 }
 
 template <int kDimension>

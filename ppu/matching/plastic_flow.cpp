@@ -119,6 +119,16 @@ PlasticFlow<kDimension>::PlasticFlow(std::shared_ptr<const RestLattice<kDimensio
   strain_.resize(edges), rate_.resize(edges), turn_.resize(edges);
 }
 
+template <int kDimension>
+std::size_t PlasticFlow<kDimension>::cells_that_contacts_hold() const {
+  constexpr double kHeld =
+      0.5 - 1e-6;  // spacing^n, as contacts/crushed_cells.h has it, less what positions in floats are off
+  std::size_t held = 0;
+  for (std::size_t cell = 0; cell < lattice_->corners().size(); ++cell)
+    if (!(volume_of<kDimension>(*lattice_, cell, rest_) >= kHeld)) ++held;
+  return held;
+}
+
 /// Calls visit(a, b) for each edge, and behind them for each diagonal of a cell.
 template <int kDimension>
 void PlasticFlow<kDimension>::set_rest(std::span<const Exact> rest) {

@@ -51,6 +51,9 @@ class PlasticFlow {
 
   std::span<const Exact> rest() const { return rest_; }  ///< metres
   void set_rest(std::span<const Exact> rest);
+  /// How many cells of the rest shape have less volume than contacts let a cell have: they would push it back in each step, and a body
+  /// that turns would turn faster and faster.
+  std::size_t cells_that_contacts_hold() const;
 
   /// A quick look at the lengths of edges and diagonals. @return false: no strain is above `yield`
   bool may_yield(std::span<const Vector> x, float yield);

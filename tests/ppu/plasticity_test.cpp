@@ -406,6 +406,39 @@ TEST(Plasticity, ARestShapeIsRestored) {
   EXPECT_THROW(other.set_rest_positions(rest), std::runtime_error);
 }
 
+/// Contacts push crushed cells back, and would do so for ever.
+TEST(Plasticity, RefusesRestShapesThatAreFlatOrMirrored) {
+  SoftBody<3> body = tumbling_body(metal(0.03f));
+  const auto shape = [&](float share) {
+    std::vector<Vector3f> rest = body.rest_positions();
+    for (Vector3f& x : rest) x.y() *= share;
+    return rest;
+  };
+  const auto sentence = [&](float share) -> std::string {
+    try {
+      body.set_rest_positions(shape(share));
+    } catch (const std::runtime_error& refusal) {
+      return refusal.what();
+    }
+    return "";
+  };
+  const std::uint64_t before = state_hash(body);
+  for (const float share : {0.3f, 0.0f, -1.0f}) {
+    const std::string cells = std::to_string(body.model().lattice().cells.size());
+    EXPECT_EQ(sentence(share), "of a soft body's rest shape " + cells + " cells of " + cells +
+                                   " are flat, turned inside out or of less than half of the model's volume, "
+                                   "which contacts would push back in each step");
+  }
+  EXPECT_EQ(state_hash(body), before);
+  EXPECT_EQ(sentence(0.5f), "");
+  const std::vector<Eigen::Vector2i> cells{{0, 0}, {1, 0}, {0, 1}, {1, 1}};
+  SoftBody<2> flat(
+      make_soft_body_model(lattice_from_cells(cells, 0.1f), SoftBodySettings{.cell_size = 0.1f}));
+  std::vector<Eigen::Vector2f> mirrored = flat.rest_positions();
+  for (Eigen::Vector2f& x : mirrored) x.x() = -x.x();
+  EXPECT_THROW(flat.set_rest_positions(mirrored), std::runtime_error);
+}
+
 TEST(Plasticity, RefusesWhatIsOutOfRange) {
   const auto sentence = [](const Plasticity& plasticity) -> std::string {
     SoftBodySettings settings = metal(0.1f);

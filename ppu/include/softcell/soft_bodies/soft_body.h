@@ -146,7 +146,8 @@ class SoftBody {
   /// Puts the body back into the model's shape, a plastic body too. Keeps its centre, mean orientation and both momenta.
   void reset_deformation();
   /// Gives the body another rest shape, for example that of a saved body: the position of each particle in metres, in any frame.
-  /// @throws std::runtime_error  a position is not finite, there are more or fewer than particles, or the model has too many particles for plastic bodies
+  /// @throws std::runtime_error  a position is not finite, there are more or fewer than particles, a cell is flat, turned inside out as those
+  /// of a mirrored shape are, or of less than half of the model's volume, or the model has too many particles for plastic bodies
   void set_rest_positions(std::span<const Vector> rest);
   void add_velocity(const Vector& dv);                                 ///< m/s, to every particle
   void add_particle_velocity(std::size_t particle, const Vector& dv);  ///< m/s
@@ -181,6 +182,8 @@ class SoftBody {
   void end_pull();
   struct RestShape;
   void set_rest(std::unique_ptr<RestShape> rest);
+  std::unique_ptr<RestShape> rest_of(std::span<const Vector> positions) const;
+  void take_rest(std::unique_ptr<RestShape> rest);
   void take_flow();
 
   std::shared_ptr<const SoftBodyModel<kDimension>> model_;
