@@ -33,11 +33,15 @@ class RecordingPort final : public ChannelPort {
     commands.push_back(command);
     return note();
   }
-  void sync() override { ++syncs; }
+  void sync() override {
+    ++syncs;
+    flags_in_sync = __builtin_ia32_readeflags_u64();
+  }
 
   std::vector<std::pair<std::uint32_t, std::uint32_t>> writes;
   std::vector<dma::MfcCommand> commands;
   int syncs = 0;
+  std::uint64_t flags_in_sync = 0;
   std::vector<unsigned int> modes;
 
  private:
@@ -150,6 +154,22 @@ TEST_F(NativeEngineTest, RestoresTheHostsArithmeticInEveryCallAndAfterwards) {
   ASSERT_FALSE(port_.modes.empty());
   for (const unsigned int mode : port_.modes) EXPECT_EQ(mode, host);
   EXPECT_EQ(_mm_getcsr() & ~_MM_EXCEPT_MASK, host);
+}
+
+/// The host's code takes it for clear, and copied over what is in front of its own buffers.
+TEST_F(NativeEngineTest, AKernelCannotTurnTheHostsStringInstructionsRound) {
+  constexpr std::uint64_t kDirectionFlag = 0x400;
+  image_ = test_image("computes");
+  engine_->load(image_);
+  for (const std::uint64_t when : {2, 3}) {
+    const RunResult result = engine_->run({.argp = 1, .envp = when}, port_);
+    const std::uint64_t flags = __builtin_ia32_readeflags_u64();
+    asm volatile("cld" ::: "cc");
+    EXPECT_FALSE(result.fault) << when;
+    EXPECT_EQ(flags & kDirectionFlag, 0u) << when;
+  }
+  EXPECT_EQ(port_.syncs, 1);
+  EXPECT_EQ(port_.flags_in_sync & kDirectionFlag, 0u);
 }
 
 TEST_F(NativeEngineTest, RestoresTheHostsArithmeticAfterAFault) {

@@ -27,7 +27,8 @@ thread_local KernelContext* context_of_thread = nullptr;
 // function(context) on another stack, as a plain call: a jump there and back by Boost.Context costs three
 // times as much, for it exchanges registers that a call keeps, an x87 mode that nobody uses, and the
 // processor predicts no return behind it. The unwinder finds its way from the worker's stack to the kernel's.
-// How much Boost has saved on `stack` depends on its version, so that its alignment is made here.
+// How much Boost has saved on `stack` depends on its version, so that its alignment is made here. A kernel may come with the direction flag
+// set, which code of the host takes for clear: its copies would go backwards.
 extern "C" bool softcell_call_on_stack(ServeRequest* function, KernelContext* context, void* stack);
 asm(R"(
         .text
@@ -35,6 +36,7 @@ asm(R"(
         .type   softcell_call_on_stack, @function
 softcell_call_on_stack:
         .cfi_startproc
+        cld
         pushq   %rbp
         .cfi_def_cfa_offset 16
         .cfi_offset %rbp, -16
