@@ -33,7 +33,7 @@ struct JointRow {
   float softness = 0;
   /// Limits of the row's impulse in a substep, for a joint that has a stop or a motor.
   float least = -kNoLimit, most = kNoLimit;
-  bool is_watched = false;  ///< the program wants to know what it bears, so its engine must see that
+  bool is_watched = false;  ///< the program reads the joint's load, so the engine itself must carry it
 
   bool is_limited() const { return least != -kNoLimit || most != kNoLimit; }
 };
