@@ -17,7 +17,7 @@ bool has_body(const b2World& world, const b2Body* body) {
 float inverse_inertia_of(const b2Body& body) {
   SC_ASSERT(body.GetType() == b2_dynamicBody, "the inertia of a body of type {}",
             static_cast<int>(body.GetType()));
-  // Box2D has it about the body's origin.
+  // Box2D gives the inertia about the body's origin.
   const float inertia = body.GetInertia() - body.GetMass() * body.GetLocalCenter().LengthSquared();
   return !body.IsFixedRotation() && inertia > 0 ? 1 / inertia : 0;
 }
