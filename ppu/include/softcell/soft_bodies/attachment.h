@@ -53,9 +53,9 @@ struct AttachmentSettings {
   /// Metres. The place of a hinge; without a value, the middle of the patch. The other end of a rope that goes to the world or to a rigid
   /// body; without a value, the rigid body's centre.
   std::optional<Vector> point = {};
-  Vector axis = Vector::UnitX();     ///< of a hinge in three dimensions; of any length but 0
+  Vector axis = Vector::UnitX();     ///< axis of a hinge in three dimensions; of any length but 0
   std::optional<float> length = {};  ///< of a rope, metres; without a value, the present distance of its ends
-  float compliance = 0;              ///< m/N: how much the attachment gives; 0: not at all
+  float compliance = 0;              ///< m/N: how far the attachment gives way; 0: not at all
   /// N: the largest force that the attachment carries. It breaks when it would have to carry more.
   float break_force = std::numeric_limits<float>::infinity();
   /// Whether the two sides touch each other. Without a value, those of ropes do, and those of welds and hinges do not.
@@ -70,7 +70,7 @@ enum class AttachmentId : std::uint32_t {};
 template <int kDimension>
 struct AttachmentState {
   Eigen::Vector<float, kDimension> force = Eigen::Vector<float, kDimension>::Zero();  ///< N, on the patch
-  /// Metres between the middle of the patch and where it is held; of a rope, to its other end.
+  /// Metres between the middle of the patch and the place where it is held; for a rope, to its other end.
   float gap = 0;
 };
 
