@@ -18,7 +18,7 @@ namespace softcell::base {
 ///
 ///   WholeFile file(path);
 ///   file.write(text);
-/// file.commit();  // without it, no file is left
+///   file.commit();  // without it, no file is left
 ///
 /// Every error is a std::runtime_error that names the file and says why it cannot be written. One thread uses
 /// one object.

@@ -5,7 +5,7 @@
 //   0x5EA0C0000000  video memory, 256 MB   | buffer | buffer |   free    |  each starts at a line
 //   0x5EA0F0000000  local store of SPE 0, 256 KB, and its registers; those of SPE n are n MB further up
 //
-// * as on a PS3; your own address space can have from 1 MB to 2816 MB
+//   * as on a PS3; your own address space can have from 1 MB to 2816 MB
 //
 // The bytes lie somewhere else in the host's memory. Host pointers belong to the PPU side, effective addresses to the SPEs, and only
 // resolve() translates one to the other.

@@ -18,7 +18,7 @@ namespace softcell::dma {
 ///   get, put, putr        1, 2, 4, 8                both multiples of the size, low four bits equal
 ///                         16 .. 16384               both multiples of 16, as is the size
 ///   their list forms      8 .. 16384, in steps of 8 EA's low half: the list, a multiple of 8 in local store
-/// the line commands     ignored                   both multiples of 128
+///   the line commands     ignored                   both multiples of 128
 ///   sndsig                4                         EA: a Sig_Notify register; LSA's low four bits are equal
 ///   data-cache hints      1 .. 16384                EA: anything
 ///

@@ -88,9 +88,8 @@ class Box2dSoftBodies {
   /// Adds a body at rest, its model's origin at `position` (metres). The reference is valid until remove(). Between steps you
   /// may change the body through its own functions; the next step sees the change. When a body of another model is
   /// assigned to it, its attachments end.
-  /// @param drawn  how bodies of the model are drawn: their outlines touch. Null: as make_skin_2d() draws them. Only the skin passed with
-  /// the
-  ///               first body of a model counts, and none with ContactMethod::kSpheres. It need not outlive the call
+  /// @param drawn  how bodies of the model are drawn: their outlines touch. Null: as make_skin_2d() draws them. Only the skin passed
+  ///               with the first body of a model counts, and none with ContactMethod::kSpheres. It need not outlive the call
   /// @throws std::runtime_error  with ContactMethod::kSpheres there would be more than 32,768 bodies
   /// @pre the model is not null; the position is finite; the skin has outlines
   SoftBody<2>& add(std::shared_ptr<const SoftBodyModel<2>> model, const Eigen::Vector2f& position,

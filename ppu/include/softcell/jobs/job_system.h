@@ -5,11 +5,11 @@
 //   JobSystem jobs(memory, {.spes = 6}, job_loop);
 //   const JobImage skin = jobs.load(image);
 //   JobChain chain(jobs, "skinning", 100);
-// chain.add({skin, first.ea()});  chain.add({skin, second.ea()});  // these run in any order, at the same time
-// chain.sync();                                                    // the next stage begins after all of them
+//   chain.add({skin, first.ea()});  chain.add({skin, second.ea()});  // these run in any order, at the same time
+//   chain.sync();                                                    // the next stage begins after all of them
 //   chain.add({skin, third.ea()});
 //   chain.kick();                                                    // the PPU is free
-// chain.wait();                                                    // ... until it needs the result
+//   chain.wait();                                                    // ... until it needs the result
 //
 // spu_kernels/job_chain.h describes the data in memory, spu_kernels/job_loop.cpp what the SPEs do with it.
 
