@@ -4,7 +4,6 @@
 // A contact's two impulses are equal and opposite. They act on two points, one of each body, which should coincide at the step's beginning.
 // The other body's point is found by a few steps of an iteration, and kept within half a cell outside of its cell, so the two are somewhat
 // apart:
-// two are somewhat apart:
 //
 //     a  --o--->         lost = (x_a - x_b) x J
 //           \  gap

@@ -16,7 +16,6 @@ namespace softcell::ppu {
 
 /// Used by one thread: call begin(), join() as often as needed, arrange(), and then the other functions. Allocates when there are more
 /// rigid bodies than ever before.
-/// rigid bodies than ever before.
 class RigidSets {
  public:
   static constexpr std::uint32_t kNone = ~0u;

@@ -2,9 +2,9 @@
 // Finds the rotation nearest to a matrix: the rotation of a region.
 //
 // R = argmax <R, A> over rotations, A = sum m p q^T. With signed singular values s1 >= s2 >= |s3| of A the
+// optimum is well determined about body axis i exactly if the sum of the other two, s_j + s_k, is not nearly 0.
 // So a flat region (s3 = 0) has one answer, and an inverted one (s3 < 0), too. A line leaves the rotation about itself undetermined, and a
 // point the whole rotation; undetermined parts stay as they were.
-// point leaves everything open; what is open stays as it was.
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>

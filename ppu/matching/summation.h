@@ -6,12 +6,12 @@
 //
 //     particles --> bars --> plates --> regions
 //     at most 6 w additions for each particle in place of (2w+1)^3 - 1
+//
 // Equal sets are stored once, however irregular the lattice, and that includes regions: a sheet one cell thick has half as many regions as
 // particles. The naive sum also adds bar by bar and plate by plate, but shares nothing; both give the same bits.
-// nothing; both give the same bits.
+//
 // Membership is symmetric, so "sum over the particles of region r" and "sum over the regions that hold particle i" are the same operator on
 // a lattice with one region per particle: the way down needs no lists of its own.
-// its own.
 
 #include <span>
 #include <vector>

@@ -8,7 +8,6 @@
 // Both parts are written as small bodies, and the kernel takes them for whole ones. Each point is in one part only. The kernel also needs
 // cells through which a way out of the body leads: the part of a has the inner cells of its cells with points, the part of b has all other
 // cells, if they fit. These cells have no boxes, so they are near nothing.
-// are near nothing.
 
 #include <cstdint>
 #include <span>
