@@ -262,7 +262,7 @@ struct Box2dSoftBodies::Impl {
     return event.pieces;
   }
 
-  /// Of the outline that is drawn now.
+  /// A query of the outline as it is drawn now.
   SurfaceQuery<2> query(const SoftBody<2>& soft) {
     return surfaces ? SurfaceQuery<2>(soft, surfaces->skin(soft.shared_model())) : SurfaceQuery<2>(soft);
   }

@@ -56,7 +56,7 @@ class SphereBody final : public CoupledBody {
     }
   }
 
-  /// Of its particles in Bullet. A body with spheres does not break.
+  /// A body with spheres does not break.
   bool can_break() const override { return false; }
   Bounds<3> box() const override {
     SC_ASSERT(!particles_.empty(), "a body without contacts has no box in Bullet");

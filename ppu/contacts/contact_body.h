@@ -88,7 +88,7 @@ class ContactModel {
 
   ContactSurface surface;
   std::vector<TouchPoint> touch_points;      ///< ascending by cell
-  std::vector<std::uint32_t> first_of_cell;  ///< of each cell: its first touch point; and their number
+  std::vector<std::uint32_t> first_of_cell;  ///< for each cell its first touch point; then the number of all
   /// Of each cell: a place well inside of the body, near the cell (inner_places.h).
   std::vector<CellPlace> inner_places;
   std::vector<float> inverse_masses;       ///< 1/kg, of each particle

@@ -27,7 +27,7 @@ void check_finite(const ContactBody& body) {
   if (!finite) refuse_to_be_infinite();
 }
 
-/// The anchor's share of a quantity of its particles.
+/// The mean of a quantity of the anchor's particles, weighted by their shares.
 template <typename OfParticle>
 Vector3f of_anchor(const Anchor& anchor, const ContactBody& /*body*/, const OfParticle& of_particle) {
   Vector3f sum = Vector3f::Zero();

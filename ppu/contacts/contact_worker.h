@@ -38,7 +38,7 @@ struct SolveGroup {
   float stiffening = 0;                       ///< 0..1
   static constexpr std::uint32_t kNoAttachments = ~0u;
   std::uint32_t attachments = kNoAttachments;  ///< instead of all of the above: a unit of hold()
-  bool ends = false;                           ///< this is its last time in this substep
+  bool ends = false;                           ///< these are the attachments' last iterations in this substep
 };
 
 /// Groups in units, units in stages. Units of one stage share no rigid body and no body that is awake, and may be solved at the same time;

@@ -11,7 +11,7 @@ namespace {
 
 using Eigen::Vector3f;
 
-// A load reaches this many cells deep before it is spread: one behind the touched cell is crushed first.
+// A load reaches this many cells deep before it spreads: a cell behind the touched one is crushed first.
 constexpr int kCellsBehind = 3;
 // These cells keep this share of their volume at rest. With 0.5, below which cells are crushed, edges get a fifth of a cell deep; with 0.6
 // an eighth, and no less with more.

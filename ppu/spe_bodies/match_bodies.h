@@ -26,7 +26,7 @@ struct MatchSettings {
   bool operator==(const MatchSettings&) const = default;
 };
 
-/// @throws std::invalid_argument  a setting is out of its range; the sentence names it.
+/// @throws std::invalid_argument  a setting is out of its range; the message names it.
 void validate(const MatchSettings& settings);
 
 /// Used by one thread at a time. While jobs are under way, call nothing that reads or changes a body.

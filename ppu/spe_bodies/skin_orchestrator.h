@@ -55,8 +55,8 @@ class SkinOrchestrator {
 
   /// Starts skinning one frame: copies each body's particle positions (in order of add()) and queues jobs for the bodies that have moved
   /// since the frame before last. Never waits.
-  /// @return false, with nothing done, if the SPEs have not finished the frame before.
-  /// @throws std::runtime_error  a job of the frame before failed: one sentence per fault.
+  /// @return false, with nothing done, if the SPEs have not finished the previous frame.
+  /// @throws std::runtime_error  a job of the previous frame failed: one sentence per fault.
   bool kick(std::span<const std::span<const Eigen::Vector4f>> positions);
 
   /// Waits for the frame under way and makes it the one that is shown, for runs whose pictures must not depend on the speed of the host.

@@ -21,7 +21,8 @@ constexpr std::size_t kQuadsOfBoxes = sizeof(spu::FindBoxes) / sizeof(spu::FindE
 constexpr std::size_t kMostPairs = 4096;                                   // that the SPEs look at in a step
 constexpr std::size_t kContactsInRoom = 2 * ContactWorker::kMostContacts;  // in one buffer
 constexpr std::size_t kJobsPerSpe = 4;  // for finding: some pairs take longer than others
-// Room for contacts: up to 512 tasks get room for the most that a task may find; many more get what bodies in a heap have in common.
+// Room for contacts: up to 512 tasks get room for the most that a task may find; with many more, each has room for as many as two bodies
+// in a heap have in common.
 constexpr std::size_t kContactsOfAll = std::size_t{512} * spu::kFindMaxContacts, kLeastContactsOfTask = 48;
 
 /// Empties a chain and reserves room for so many jobs. @pre it has ended

@@ -48,7 +48,7 @@ class EdgeSet {
     bool runs_up;  // the first triangle's side runs from low to high
   };
 
-  /// Called when the first triangle comes: often none does.
+  /// Called when the first triangle is added, since often there is none.
   void make_slots() {
     found_.reserve(is_flat_.size());
     const std::size_t slots = std::bit_ceil(2 * is_flat_.size() + 1);

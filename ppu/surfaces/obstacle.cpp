@@ -33,7 +33,7 @@ struct Profile {
   Vector2f normal;  // by radius and height
 };
 
-/// Of a polygon of three or four corners, counter-clockwise; its edges on the axis do not count.
+/// The distance from a polygon of three or four corners, counter-clockwise; its edges on the axis do not count.
 template <std::size_t kCorners>
 Profile from_outline(const std::array<Vector2f, kCorners>& corner, const Vector2f& p) {
   Profile inside{-std::numeric_limits<float>::max(), Vector2f::UnitY()};

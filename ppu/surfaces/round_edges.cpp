@@ -91,7 +91,7 @@ void add_edge_of_hull(const ObstacleEdge& edge, std::span<const Vector4f> planes
 
 void add_edges_of_hull(std::span<const ObstacleEdge> of_hull, std::span<const Vector4f> planes,
                        std::vector<ObstacleEdge>& edges) {
-  constexpr std::size_t kMost = 60'000;  // edges times faces: a frame waits some millisecond for them
+  constexpr std::size_t kMost = 60'000;  // edges times faces: they take about a millisecond
   if (of_hull.size() * planes.size() > kMost) {
     edges.insert(edges.end(), of_hull.begin(), of_hull.end());
     return;

@@ -12,10 +12,10 @@ using Eigen::Vector3f;
 using Eigen::Vector4f;
 
 // As shares of the spacing:
-constexpr float kInside = 0.02f;   // distance from an edge or a face of the places that are looked at
-constexpr float kGoesOn = 0.25f;   // there has to be something so far beyond an edge
+constexpr float kInside = 0.02f;   // distance of the tested places from an edge or a face
+constexpr float kGoesOn = 0.25f;   // a face goes on if there is something this far beyond its edge
 constexpr float kLevel = 0.0025f;  // up to this height something is level with a face
-constexpr float kDeepest = 0.25f;  // another way out is at most so long
+constexpr float kDeepest = 0.25f;  // the longest way out through another face
 
 /// Cosines and sines of an eighth and of a sixteenth of a turn.
 constexpr float kEighth = 0.70710678f, kCos = 0.92387953f, kSin = 0.38268343f;

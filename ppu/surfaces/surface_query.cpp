@@ -275,7 +275,7 @@ float SurfaceQuery<kDimension>::distance(const Vector& point) const {
   return nearest(point).distance();
 }
 
-/// Moves the sphere on by as much as is free, which is never too far.
+/// Moves the sphere on by its distance from the surface again and again, which is never too far.
 template <int kDimension>
 std::optional<SurfaceHit<kDimension>> SurfaceQuery<kDimension>::cast_sphere(const Vector& from,
                                                                             const Vector& to,

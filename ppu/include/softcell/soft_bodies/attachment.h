@@ -98,7 +98,7 @@ struct EndedAttachment {
   Reason reason = Reason::kBroken;
 };
 
-/// @throws std::invalid_argument  a value is out of its range, or given for another kind; the sentence names it and the range.
+/// @throws std::invalid_argument  a value is out of its range, or given for another kind; the message names it and the range.
 template <int kDimension>
 void validate(const AttachmentSettings<kDimension>& settings);
 extern template void validate(const AttachmentSettings<2>& settings);

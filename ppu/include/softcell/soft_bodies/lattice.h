@@ -70,7 +70,7 @@ struct Lattice {
 /// inside. Deterministic. The surface may have gaps smaller than a cell.
 /// @throws std::runtime_error  cell size not positive and finite; so large that one cell holds the whole
 ///         mesh; so small that the lattice passes kMaxLatticeParticles or kMaxLatticeCellsPerAxis (found
-///         before anything is allocated for it); the sentence states the value and what would fit.
+///         before anything is allocated for it); the message states the value and what would fit.
 Lattice<3> voxelize(const TriangleMesh& mesh, float cell_size);
 
 /// The number of particles that voxelize() would make, found without making the lattice; it may exceed kMaxLatticeParticles.

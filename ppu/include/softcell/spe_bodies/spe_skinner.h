@@ -89,7 +89,7 @@ class SpeSkinner {
   /// Copies the present positions of all particles and starts skinning on the SPEs. Never waits: if the SPEs have not finished the frame
   /// before, it does nothing, and the picture stays as it is.
   /// @return whether a frame has begun.
-  /// @throws std::runtime_error  a job of the frame before has failed, or a body has another model than when it was added; the
+  /// @throws std::runtime_error  a job of the previous frame has failed, or a body has another model than when it was added; the
   ///                             message says which.
   bool begin_frame();
 
