@@ -1,5 +1,5 @@
 #pragma once
-// Bodies of one world that break, and stay whole until another thread has made their pieces.
+// Keeps track of a world's bodies that break. Each stays whole until another thread has made its pieces.
 
 #include <algorithm>
 #include <cstddef>
@@ -16,22 +16,22 @@
 
 namespace softcell::ppu {
 
-/// How many substeps pass from a break to its pieces, which are made in the meantime by another thread. A number that depends on the body
-/// alone: with as many results are the same, however fast that thread is. One core makes the pieces of 1,000 particles in some 8 ms.
+/// How many substeps pass from a break until its pieces appear; another thread makes them meanwhile. The number depends on the body alone,
+/// so results do not depend on how fast that thread is. One core makes the pieces of 1,000 particles in some 8 ms.
 inline int substeps_until_pieces(std::size_t particles) {
-  constexpr std::size_t kAtOnce = 100;  // takes less than handing over
+  constexpr std::size_t kAtOnce = 100;  // takes less time than handing over
   return particles <= kAtOnce ? 0 : 2 + static_cast<int>(particles / 1000);
 }
 
-/// Whether it is tested only in the next substep if a substep has broken the body, as soon as the solver has ended its part: an SPE may have
-/// seen by then that it has not. Not of bodies whose pieces come at once, nor of those whose rest shape may flow in that part.
+/// Whether the test for breaks is put off to the next substep, when the solver has ended its part: by then an SPE may have found that the
+/// body has not broken. Not for bodies whose pieces appear at once, nor for those whose rest shape may flow in that part.
 template <int kDimension>
 bool is_tested_late(const SoftBody<kDimension>& body) {
   return substeps_until_pieces(body.positions().size()) > 0 && !body.settings().plasticity &&
          !body.has_own_rest();
 }
 
-/// What was removed is not named any more.
+/// Removes a body that no longer exists from reports of broken bodies.
 template <int kDimension>
 void forget_removed(const SoftBody<kDimension>& body, std::vector<BrokenBody<kDimension>>& broken) {
   std::erase_if(broken, [&](const BrokenBody<kDimension>& one) { return one.body == &body; });
@@ -43,12 +43,12 @@ void forget_removed(const SoftBody<kDimension>& body, std::vector<BrokenBody<kDi
   }
 }
 
-/// In the order in which they began.
-/// @tparam Coupled  has soft() and can_break()   @tparam Pieces  what is made
+/// The breaks, in the order in which they began.
+/// @tparam Coupled  has soft() and can_break()   @tparam Pieces  what the other thread makes
 template <int kDimension, class Coupled, class Pieces>
 class Breaks {
  public:
-  /// A body as it was when a substep had moved it.
+  /// A body after a substep that may have broken it.
   struct Strained {
     explicit Strained(Coupled& coupled)
         : body(&coupled), model(coupled.soft().shared_model()), resets(coupled.soft().resets()) {}
@@ -57,20 +57,21 @@ class Breaks {
     std::shared_ptr<const SoftBodyModel<kDimension>> model;
     std::uint32_t resets;  ///< SoftBody::resets()
 
-    /// The body was assigned, teleported or straightened since: it is not the one that was strained.
+    /// Whether the body was assigned, teleported or straightened since: then it is not the strained one any more.
     bool is_void() const { return body->soft().shared_model() != model || body->soft().resets() != resets; }
   };
   struct Break : Strained {
     std::size_t faces = 0;
-    int substeps = 0;  ///< until it has pieces
+    int substeps = 0;  ///< until the pieces appear
     std::future<Pieces> pieces;
   };
 
-  /// After a substep: tests those that may break. Pieces are tested from the next substep on, bodies that are breaking not any more.
-  /// @param maker  of pieces: its begin_break(body, faces, substeps) has them made; so many substeps are to come until they are there
+  /// Call it after a substep: tests the bodies that may break. New pieces are tested from the next substep on; bodies that are already
+  /// breaking are not tested.
+  /// @param maker  its begin_break(body, faces, substeps) starts making pieces, which appear after that many substeps
   template <class Bodies, class Maker>
   void test(const Bodies& bodies, Maker& maker) {
-    for (std::size_t i = 0, count = bodies.size(); i < count; ++i) {  // pieces come behind them
+    for (std::size_t i = 0, count = bodies.size(); i < count; ++i) {  // pieces are appended after them
       Coupled& body = *bodies[i];
       const SoftBody<kDimension>& soft = body.soft();
       if (!soft.settings().fracture || soft.asleep() || !body.can_break() || has(body)) continue;
@@ -80,14 +81,14 @@ class Breaks {
         test(body, substeps_until_pieces(soft.positions().size()), maker);
     }
   }
-  /// In the next substep: tests those that wait for it. @param solver  a StepAhead, which has ended its part
+  /// Call it in the next substep: tests the bodies that wait for it. @param solver  a StepAhead, which has ended its part
   template <class Solver, class Maker>
   void test_late(const Solver& solver, Maker& maker) {
     for (const Strained& one : to_test_)
       if (!one.is_void() && solver.may_break(one.body->soft())) test_late(*one.body, maker);
     to_test_.clear();
   }
-  /// Between substeps: whether a body is breaking. If it waits for its test, it is tested now.
+  /// Call it between substeps: whether a body is breaking. If its test was put off, it is tested now.
   template <class Maker>
   bool is_breaking(Coupled& body, Maker& maker) {
     const bool waits = std::erase_if(to_test_, [&](const Strained& one) {
@@ -100,11 +101,11 @@ class Breaks {
   bool has(const Coupled& body) const {
     return std::any_of(breaks_.begin(), breaks_.end(), [&](const Break& one) { return one.body == &body; });
   }
-  /// @param faces  that break   @param substeps  until it has pieces
+  /// @param faces  that break   @param substeps  until the pieces appear
   void begin(Coupled& body, std::size_t faces, int substeps, std::future<Pieces> pieces) {
     breaks_.push_back({Strained(body), faces, substeps, std::move(pieces)});
   }
-  /// After a substep. @return those whose bodies have pieces now; those that are void are gone
+  /// Call it after a substep. Also removes void breaks. @return the breaks whose pieces appear now
   std::vector<Break> take_due() {
     std::vector<Break> due;
     for (Break& one : breaks_)
@@ -112,7 +113,7 @@ class Breaks {
     std::erase_if(breaks_, [](const Break& one) { return one.substeps < 0 || one.is_void(); });
     return due;
   }
-  /// @return the break of a body, if it is breaking and the break is not void. It is not breaking any more
+  /// Ends the break of a body. @return the break, if the body was breaking and the break is not void
   std::optional<Break> take(const Coupled& body) {
     const auto found =
         std::find_if(breaks_.begin(), breaks_.end(), [&](const Break& one) { return one.body == &body; });
@@ -133,10 +134,10 @@ class Breaks {
     if (const auto faces = strained_faces(body.soft(), break_test_); !faces.empty())
       maker.begin_break(body, faces, substeps);
   }
-  /// The substep that has strained the body has counted already.
+  /// The substep that has strained the body counts already.
   template <class Maker>
   void test_late(Coupled& body, Maker& maker) {
-    if (!body.soft().settings().fracture) return;  // it had
+    if (!body.soft().settings().fracture) return;  // its user has changed the settings
     test(body, substeps_until_pieces(body.soft().positions().size()) - 1, maker);
   }
 

@@ -8,7 +8,7 @@
 namespace softcell::ppu {
 namespace {
 
-/// A particle's vector in one register, which has room for four numbers: in three dimensions the fourth is of no use, and anything.
+/// A particle's vector in one register, which has room for four numbers: in three dimensions the fourth is unused and may be anything.
 template <int kDimension>
 using InRegister = std::conditional_t<kDimension == 3, Eigen::Vector4f, Eigen::Vector2f>;
 
@@ -27,7 +27,7 @@ Eigen::Vector<float, kDimension> narrow(const InRegister<kDimension>& vector) {
   return vector.template head<kDimension>();
 }
 
-/// Sums of d and of r d^T over particles: floats over few, doubles over all.
+/// Sums of d and of r d^T over particles: in floats over a few, in doubles over all.
 template <int kDimension>
 class Moments {
  public:
@@ -47,7 +47,7 @@ class Moments {
     carry();
     return matrix_;
   }
-  /// Sum of r x d.
+  /// The sum of r x d.
   turning::Axial<kDimension> spin() {
     const Matrix& m = second();
     if constexpr (kDimension == 3)
@@ -80,7 +80,7 @@ class Moments {
 bool is_finite(double spin) { return std::isfinite(spin); }
 bool is_finite(const Eigen::Vector3d& spin) { return spin.allFinite(); }
 
-/// Columns k with velocity = sum of column k times arm k.
+/// Sets columns so that velocity = sum of column k times arm k.
 void set_columns(InRegister<2> (&columns)[3], double turn) {
   const auto omega = static_cast<float>(turn);
   columns[0] = {0, omega};
@@ -102,7 +102,7 @@ void LostMomenta<kDimension>::count(std::span<const Vector> positions, std::span
                 after.size() == positions.size(),
             "{} positions, {} masses, {} and {} velocities", positions.size(), masses.size(), before.size(),
             after.size());
-  // Arms from a point of the body: far from the origin they are as exact as near it.
+  // Arms start at a point of the body, so that they are as exact far from the origin as near it.
   const InRegister<kDimension> middle = in_register<kDimension>(positions, positions.size() / 2);
   const std::span<const Vector> now = after;
   Moments<kDimension> lost;
@@ -130,7 +130,7 @@ void LostMomenta<kDimension>::give_back(std::span<const Vector> positions, std::
     body.add(arm, masses[i] * arm);
     mass += double{masses[i]};
   }
-  // About the centre of mass, which is here from `middle`.
+  // About the centre of mass, whose position is relative to `middle`.
   const Double centre = body.first() / mass, origin = narrow<kDimension>(middle).template cast<double>();
   const Double velocity = momentum_ / mass;
   const Axial spin = spin_ - turning::cross(Double(origin + centre), momentum_);

@@ -1,12 +1,12 @@
 #pragma once
-// What shape matching and damping take off a body's momenta, and its return.
+// Measures the momenta that a body loses by rounding in shape matching and damping, and returns them.
 //
-// Both act within a body, so its momentum and angular momentum should stay. They nearly do: rotations of regions are found by iterations that
-// end a little behind a body that turns, and SPUs truncate. What is lost in a step is about what one bit of a float is, always to
-// the same side: in a thousand steps a body that only turns loses 1/2000 of its angular momentum.
+// Both act within a body, so its momentum and angular momentum should stay. They nearly do: iterations for the rotations of regions end
+// slightly behind a body that rotates, and SPUs truncate. The loss in a step is about one bit of a float, but always in the same direction:
+// in a thousand steps a body that only rotates loses 1/2000 of its angular momentum.
 //
 //     step    1      2      3      4             5  ...
-//     lost    +      +      +      +  -> given back as one rigid motion; what floats cannot hold of it stays on account
+//     lost    +      +      +      +  -> given back as one rigid motion; the rest, too small for floats, is kept for later
 
 #include <Eigen/Core>
 #include <cstddef>
@@ -16,24 +16,25 @@
 
 namespace softcell::ppu {
 
-/// Of one body. Used by one thread; allocates nothing.
+/// The losses of one body. Used by one thread; allocates nothing.
 template <int kDimension>
 class LostMomenta {
  public:
   using Vector = Eigen::Vector<float, kDimension>;
   using Double = Eigen::Vector<double, kDimension>;
 
-  /// Of a body that was moved by its user, nothing is lost.
+  /// Forgets all losses: the user has moved the body.
   void forget() { *this = {}; }
 
-  /// Velocities that forces within the body have changed in a step; every kSteps-th call changes `after` once more.
-  /// @param positions  metres   @param masses  kg   @param before, after  m/s; all of each particle
+  /// Adds the losses in a step in which forces within the body have changed velocities. Every kSteps-th call returns them by changing
+  /// `after`.
+  /// @param positions  metres   @param masses  kg   @param before, after  m/s; each for all particles
   void count(std::span<const Vector> positions, std::span<const float> masses, std::span<const Vector> before,
              std::span<Vector> after);
 
   static constexpr int kSteps = 4;
 
-  /// Of a piece, the part that it has in what was lost of the whole, by mass: of all pieces together all.
+  /// Takes a piece's share of the whole's losses, by mass; the shares of all pieces add up to all of them.
   /// @param share  of the whole's mass   @param from_centre  metres, to the piece's centre of mass from the whole's
   void inherit(const LostMomenta& whole, double share, const Double& from_centre);
 

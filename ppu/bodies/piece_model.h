@@ -1,5 +1,5 @@
 #pragma once
-// The model of a piece of a broken body.
+// Makes the model of a piece of a broken body.
 
 #include <memory>
 
@@ -8,8 +8,8 @@
 
 namespace softcell::ppu {
 
-/// With the settings of the body that breaks. What has not changed, because no crack has opened, is shared with it.
-/// @param broken  whole, or a piece itself
+/// The settings are those of the broken body. If no crack has opened, unchanged data is shared with its model.
+/// @param broken  a whole body's model, or a piece's
 std::shared_ptr<const SoftBodyModel<3>> make_piece_model(
     const std::shared_ptr<const SoftBodyModel<3>>& broken, CrackedPiece<3> piece);
 std::shared_ptr<const SoftBodyModel<2>> make_piece_model(

@@ -12,7 +12,7 @@ namespace softcell::ppu {
 
 namespace {
 
-/// @param particles  where they are
+/// @param particles  their positions
 void skin(const Embedding& embedding, std::span<const Eigen::Vector3f> particles,
           std::span<Eigen::Vector3f> positions, std::span<Eigen::Vector3f> normals) {
   const std::size_t vertices = embedding.slot_of_vertex.size();
@@ -45,7 +45,7 @@ TriangleMesh rest_mesh(const SoftBody<3>& body) {
   SC_ASSERT(!mesh.positions.empty(), "a body of {} particles has no mesh in its rest shape",
             body.positions().size());
   const std::vector<Eigen::Vector3f> rest = body.rest_positions();
-  // A mesh may come without normals.
+  // A mesh may have no normals.
   std::vector<Eigen::Vector3f> normals(mesh.positions.size());
   skin(body.model().embedding(), rest, mesh.positions, normals);
   if (!mesh.normals.empty()) mesh.normals = std::move(normals);

@@ -33,7 +33,7 @@ Matrix3d matrix_of(const Eigen::Quaternionf& rotation) {
   return rotation.normalized().toRotationMatrix().cast<double>();
 }
 
-/// Sums over the body in double precision: positions far from the origin lose nothing.
+/// Sums over the body in double precision, so that positions far from the origin lose no accuracy.
 template <int kDimension>
 struct Motion {
   using Vector = Eigen::Vector<double, kDimension>;
@@ -74,7 +74,7 @@ Motion<kDimension> motion_of(const SoftBody<kDimension>& body) {
   return motion;
 }
 
-/// The rotation of the undeformed body, about `centre`, that comes nearest to what it is now.
+/// The rotation about `centre` by which the undeformed body fits the present one best.
 template <int kDimension>
 typename Motion<kDimension>::Matrix orientation_of(const SoftBody<kDimension>& body,
                                                    const typename Motion<kDimension>::Vector& centre) {
@@ -91,7 +91,8 @@ typename Motion<kDimension>::Matrix orientation_of(const SoftBody<kDimension>& b
   return nearest_rotation(correlation);
 }
 
-/// Where the rest shapes of all bodies flow. A body that yields does so in each look, and a result is wanted in the next step only.
+/// The thread on which the rest shapes of all bodies flow. A body that yields flows after each look, and the result is needed only in the
+/// next step.
 Workshop& flows() {
   static Workshop workshop(Workshop::Start::kByClock);
   return workshop;
@@ -99,16 +100,16 @@ Workshop& flows() {
 
 }  // namespace
 
-/// What a plastic body has in addition. It is null until the body was looked at, `shape` until it has yielded.
+/// The additional data of a plastic body: null until the body is first looked at. `shape` is null until the body has yielded.
 //
 //     flow()   look   take   2   3   look   take ...     the result is taken kFlowSteps calls later, or is waited for:
-//     flows()  [ a flow ]            [ a flow ]           what comes of it does not depend on that thread
+//     flows()  [ a flow ]            [ a flow ]           so it does not depend on how fast that thread is
 //
 template <int kDimension>
 struct SoftBody<kDimension>::RestShape {
   using Exact = Eigen::Matrix<double, kDimension, 1>;
 
-  /// What has yielded. Immutable, as copies of a body share it.
+  /// A rest shape after yielding. Immutable, as copies of a body share it.
   struct Shape {
     MatchingPlan<float, kDimension> plan;
     std::vector<Vector> positions;  // metres
@@ -137,23 +138,23 @@ struct SoftBody<kDimension>::RestShape {
       positions.push_back(plan.rest_centre() + particle.x0);
     return std::make_shared<const Shape>(Shape{std::move(plan), std::move(positions)});
   }
-  /// Returns when a flow that has begun has a result.
+  /// Returns when a flow that was begun has a result.
   void wait() const {
     if (!next.valid() || next.wait_for(std::chrono::seconds(0)) == std::future_status::ready) return;
     flows().hurry();
     next.wait();
   }
 
-  // flows() has these two while `next` is not ready.
+  // flows() uses these two while `next` is not ready.
   std::shared_ptr<PlasticFlow<kDimension>> flow;
   std::shared_ptr<std::vector<Vector>> seen = std::make_shared<std::vector<Vector>>();  // positions, metres
 
   std::shared_ptr<const Shape> shape;  // null: the model's
   std::shared_future<std::shared_ptr<const Shape>>
-      next;  // of a flow that has begun; null: the same as before
-  // What was taken last was another shape: whether it goes on flows() finds out.
+      next;  // result of a flow that was begun; null: the shape has not changed
+  // The last result was a new shape. Whether it goes on flowing is found out by flows().
   bool is_flowing = false;
-  std::shared_ptr<const Shape> worn;  // the one before it: flows() destroys it with the next flow
+  std::shared_ptr<const Shape> worn;  // the previous shape: flows() destroys it with the next flow
 };
 
 template <int kDimension>
@@ -200,7 +201,7 @@ SoftBody<kDimension>& SoftBody<kDimension>::operator=(const SoftBody& other) {
   set_rest(other.rest_ ? std::make_unique<RestShape>(*other.rest_) : nullptr);
   steps_since_look_ = other.steps_since_look_;
   asleep_ = other.asleep_;
-  // A change by the user: couplings must notice, whatever the other's counts are.
+  // A change by the user: couplings must notice it, whatever the other body's counts are.
   ++revision_;
   ++resets_;
   return *this;
@@ -243,7 +244,7 @@ void SoftBody<kDimension>::place_at_rest(const Vector& position) {
 template <int kDimension>
 void SoftBody<kDimension>::set_asleep(bool asleep) {
   asleep_ = asleep;
-  if (asleep) lost_->forget();  // couplings stop what falls asleep
+  if (asleep) lost_->forget();  // couplings stop bodies that fall asleep
 }
 
 template <int kDimension>
@@ -331,7 +332,7 @@ void SoftBody<kDimension>::flow(float step, std::optional<float> stretch) {
   steps_since_look_ = 0;
   if (!rest_) rest_ = std::make_unique<RestShape>(*model_);
   const Plasticity& plasticity = *settings_.plasticity;
-  // The thread that flows looks closely where this one need not.
+  // The thread that flows does the close look if this thread need not.
   bool looked = false;
   if (!rest_->is_flowing) {
     std::optional<bool> yields = stretch ? rest_->flow->may_yield(*stretch, plasticity.yield) : std::nullopt;
@@ -339,11 +340,11 @@ void SoftBody<kDimension>::flow(float step, std::optional<float> stretch) {
     if (looked) yields = rest_->flow->may_yield(x_, plasticity.yield);
     if (!*yields) return;
   }
-  // The body may have sprung back when the flow is done: with more, and in some ways it would go to and fro.
+  // The body may have sprung back when the flow is done: a larger share would make it oscillate in some cases.
   constexpr double kMost = 0.7;
   const double share = std::min(kMost, damping_from_time_constant(1 / static_cast<double>(plasticity.creep),
                                                                   kPlasticSteps * static_cast<double>(step)));
-  // Memory that another thread frees comes with new pages each time, which cost this thread more than the copy.
+  // Memory that another thread frees comes back with new pages each time, which costs this thread more than the copy.
   rest_->seen->assign(x_.begin(), x_.end());
   using Shape = std::shared_ptr<const typename RestShape::Shape>;
   rest_->next = flows().begin([flow = rest_->flow, seen = rest_->seen, plan = plan(), plasticity, share,
@@ -354,7 +355,7 @@ void SoftBody<kDimension>::flow(float step, std::optional<float> stretch) {
   });
 }
 
-/// The constants of shape matching follow the rest shape.
+/// Updates the constants of shape matching to the rest shape.
 template <int kDimension>
 void SoftBody<kDimension>::take_flow() {
   SC_ASSERT(rest_ != nullptr, "a body of {} particles was never looked at", x_.size());
@@ -456,7 +457,7 @@ template <int kDimension>
 void SoftBody<kDimension>::translate(const Vector& by) {
   SC_ASSERT(by.allFinite(), "a body of {} particles is moved to infinity or NaN", x_.size());
   for (std::size_t i = 0; i < x_.size(); ++i) set_position(i, x_[i] + by);
-  lost_->forget();  // it was about a place
+  lost_->forget();  // it referred to the old place
   ++revision_;
 }
 
@@ -496,8 +497,8 @@ void SoftBody<kDimension>::reset_deformation() {
     const typename Motion<kDimension>::Vector x = motion.centre + turn * rest[i].x0.template cast<double>();
     set_particle(i, x.template cast<float>(), motion.velocity.template cast<float>());
   }
-  // The undeformed body has another inertia: the turn that gives it the same angular momentum. A lattice is
-  // at least a cell in each direction, so its inertia can be inverted.
+  // The undeformed body has another inertia: computes the spin that gives it the same angular momentum. A lattice has at least one cell in
+  // each direction, so its inertia can be inverted.
   const decltype(motion.spin) omega = inverse(motion_of(*this).inertia) * motion.spin;
   forget_rotations();
   lost_->forget();

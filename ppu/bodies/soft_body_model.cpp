@@ -18,7 +18,7 @@
 namespace softcell::ppu {
 namespace {
 
-/// All corners of cells that have one of some particles.
+/// Marks all corners of cells that have at least one of some particles.
 template <int kDimension>
 void add_corners_around(const Lattice<kDimension>& lattice, const std::vector<bool>& particles,
                         std::vector<bool>& added) {
@@ -28,7 +28,8 @@ void add_corners_around(const Lattice<kDimension>& lattice, const std::vector<bo
   }
 }
 
-/// Behind a cut particles collide two deep: two pieces whose small circles at the cut slip past each other meet the large ones behind them.
+/// Behind a cut, particles collide in two layers: if the small circles at the cuts of two pieces slip past each other, they meet the large
+/// ones behind.
 std::vector<bool> colliding_particles(const Lattice<2>& lattice, const std::vector<bool>& at_cut) {
   std::vector<bool> result = outer_particles(lattice);
   if (!at_cut.empty()) add_corners_around(lattice, at_cut, result);
@@ -42,7 +43,7 @@ std::vector<bool> colliding_particles(const Lattice<3>& lattice, const std::vect
   return result;
 }
 
-/// Of each particle of a piece: whether fewer cells have it than in the whole.
+/// For each particle of a piece: whether fewer cells have it than in the whole.
 std::vector<bool> particles_at_cuts(const Lattice<2>& piece, const Lattice<2>& whole) {
   std::vector<int> lost(piece.particles.size());
   for (std::size_t i = 0; i < lost.size(); ++i)
@@ -156,7 +157,7 @@ struct SoftBodyModelMaker {
     if (settings.fracture) model->cracks();
     return model;
   }
-  /// With as many particles and cells nothing has come apart.
+  /// With the same number of particles and cells nothing has come apart.
   template <int kDimension>
   static bool is_same(const SoftBodyModel<kDimension>& broken, const Lattice<kDimension>& lattice) {
     return lattice.particles.size() == broken.particles() &&

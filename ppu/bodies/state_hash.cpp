@@ -18,7 +18,7 @@ std::uint64_t hash_of(std::span<const Position> positions, std::span<const Veloc
 
 }  // namespace
 
-/// Of bodies that have yielded only: all others have the hash of an elastic body.
+/// Adds the rest shape of bodies that have yielded; all others keep the hash of an elastic body.
 template <int kDimension>
 std::uint64_t with_rest_shape(const SoftBody<kDimension>& body, std::uint64_t hash) {
   if (!body.has_own_rest()) return hash;

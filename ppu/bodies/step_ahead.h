@@ -1,8 +1,8 @@
 #pragma once
-// The bodies of one world with their solver, and the step that the solver may have begun ahead of the engine.
+// The bodies of one world, their solver, and the step that the solver may have begun ahead of the engine.
 //
 //     begin(step)     the solver copies positions and velocities and works on its own, while the PPU does other things
-//     finish(step)    the engine asks for the step: waits for the solver, or has it do the whole step now
+//     finish(step)    the engine needs the step: waits for the solver, or makes it do the whole step now
 //
 // If a body was changed in between, drop() discards the step that was begun; finish() then begins a new one.
 
@@ -27,13 +27,13 @@ class StepAhead {
   using Solver = SoftBodySolver<kDimension>;
 
   explicit StepAhead(std::unique_ptr<Solver> solver) : StepAhead(*solver) { owned_ = std::move(solver); }
-  /// @param solver  outlives this object.
+  /// @param solver  must outlive this object.
   explicit StepAhead(Solver& solver) : solver_(solver) {}
   ~StepAhead() { clear(); }
   StepAhead(const StepAhead&) = delete;
   StepAhead& operator=(const StepAhead&) = delete;
 
-  /// @param body  stays where it is until it is removed.
+  /// @param body  must stay in place until it is removed.
   void add(Body& body) {
     SC_ASSERT(std::ranges::find(bodies_, &body) == bodies_.end(), "a body is added twice to {}",
               bodies_.size());
@@ -53,28 +53,28 @@ class StepAhead {
     bodies_.clear();
   }
 
-  /// The body was teleported: the solver forgets its rotations. @pre No step has been begun.
+  /// Tells that the body was teleported: the solver forgets its rotations. @pre No step has been begun.
   void forget(const Body& body) {
     SC_ASSERT(begun_ == 0, "a body is forgotten during its step of {} s", begun_);
     solver_.forget(body);
   }
 
-  /// A body becomes pieces: see SoftBodySolver::inherit_state(). @pre No step has been begun.
+  /// Tells that a body breaks into pieces: see SoftBodySolver::inherit_state(). @pre No step has been begun.
   void inherit_state(const Body& whole, const Body& piece, std::span<const std::uint32_t> particle_of) {
     SC_ASSERT(begun_ == 0, "a body breaks during its step of {} s", begun_);
     solver_.inherit_state(whole, piece, particle_of);
   }
 
-  /// Directly after finish(): see SoftBodySolver::may_break(). @pre No step has been begun.
+  /// Call it directly after finish(): see SoftBodySolver::may_break(). @pre No step has been begun.
   bool may_break(const Body& body) const {
     SC_ASSERT(begun_ == 0, "a body is asked whether it breaks during its step of {} s", begun_);
     return solver_.may_break(body);
   }
 
-  /// Of any thread.
+  /// May be called by any thread.
   void prepare(const std::shared_ptr<const SoftBodyModel<kDimension>>& model) { solver_.prepare(model); }
 
-  /// Begins a step of `step` seconds, in place of one that was begun before.
+  /// Begins a step of `step` seconds and discards one that was begun before.
   void begin(float step) {
     SC_ASSERT(step > 0, "a time step of {} s", step);
     drop();
@@ -88,7 +88,7 @@ class StepAhead {
     if (std::exchange(begun_, 0.0f) != 0) solver_.drop();
   }
 
-  /// Changes the velocities of all bodies that are awake, by the step that was begun or by one from now.
+  /// Changes the velocities of all bodies that are awake, with the step that was begun or with a new one.
   /// @return how long the calling thread waited for the solver.
   std::chrono::nanoseconds finish(float step) {
     if (!has_begun(step)) begin(step);
@@ -99,7 +99,7 @@ class StepAhead {
   }
 
  private:
-  std::unique_ptr<Solver> owned_;  // null: the caller has it
+  std::unique_ptr<Solver> owned_;  // null: the caller owns it
   Solver& solver_;
   std::vector<Body*> bodies_;
   float begun_ = 0;  // seconds; 0: none

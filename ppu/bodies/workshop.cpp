@@ -39,13 +39,14 @@ void Workshop::hurry() {
   has_changed_.notify_one();
 }
 
-/// Returns with the lock, and with a task or at the end.
+/// Returns with the lock, when there is a task or the workshop ends.
 //
-//     tasks    |  between_  |  between_  |        between_ may change by an eighth; what comes later has to wake the thread
+//     tasks    |  between_  |  between_  |        between_ may vary by an eighth; a later task has to wake the thread
 //     looks                  | | | |      | | | |
 //
 void Workshop::wait_for_task(std::unique_lock<std::mutex>& lock) {
-  // With less than kShortest between tasks, a task may be waited for before the thread looks. A step of a game that is not shown is such.
+  // If tasks come more often than every kShortest, somebody may wait for one before the thread looks. This happens when a game's step is
+  // not drawn.
   constexpr auto kShortest = std::chrono::milliseconds(4), kLongest = std::chrono::milliseconds(100);
   constexpr int kLooks = 4;
   const auto has_task = [this] { return ends_ || !tasks_.empty(); };
@@ -69,7 +70,7 @@ void Workshop::work() {
     tasks_.pop();
     lock.unlock();
     task();
-    task = nullptr;  // what it held goes on this thread
+    task = nullptr;  // its data is destroyed on this thread
     lock.lock();
   }
 }

@@ -1,5 +1,5 @@
 #pragma once
-// What takes long and need not be ready at once, such as pieces of broken bodies, is made on a thread of its own.
+// Runs slow tasks whose results are not needed at once, such as making pieces of broken bodies, on a thread of its own.
 
 #include <chrono>
 #include <condition_variable>
@@ -15,24 +15,24 @@
 
 namespace softcell::ppu {
 
-/// Any thread may use it. Its own thread begins with the first task, and takes one after the other.
+/// Any thread may use it. Its own thread starts with the first task and runs one task after the other.
 class Workshop {
  public:
-  /// When its thread begins with a task that finds it idle.
+  /// How the idle thread learns of a new task.
   enum class Start {
-    kAtOnce,   ///< whoever adds the task wakes it, for 4 to 50 us of his time
-    kByClock,  ///< the same, unless tasks come at a regular pace: then it wakes itself a little after one is due. See hurry()
+    kAtOnce,  ///< the thread that adds a task wakes it, which takes 4 to 50 us
+    kByClock,  ///< the same, but with tasks at a regular pace it wakes itself a little after one is due. See hurry()
   };
   explicit Workshop(Start start = Start::kAtOnce) : start_(start) {}
-  /// Waits for the task under way; others are given up.
+  /// Waits for the current task; the others are dropped.
   ~Workshop();
   Workshop(const Workshop&) = delete;
   Workshop& operator=(const Workshop&) = delete;
 
-  /// @param make  makes something. What it uses outlives this; what it has is destroyed on this thread
+  /// @param make  makes the result. The data that it refers to must outlive this object; its own data is destroyed on this thread
   template <class Make>
   std::future<std::invoke_result_t<Make>> begin(Make make) {
-    // Not a std::packaged_task: that keeps `make` for as long as somebody has the future.
+    // Not a std::packaged_task, which keeps `make` for as long as somebody has the future.
     using Made = std::promise<std::invoke_result_t<Make>>;
     const auto task = std::make_shared<std::pair<Made, Make>>(Made(), std::move(make));
     std::future<std::invoke_result_t<Make>> made = task->first.get_future();
@@ -46,10 +46,10 @@ class Workshop {
     return made;
   }
 
-  /// What was begun is waited for: its thread begins with it now, if it has not yet.
+  /// Tells that somebody waits for a task: the thread begins with it now, if it has not yet.
   void hurry();
 
-  /// Destroys what is large on its thread.
+  /// Destroys a large object on the workshop's thread.
   template <class Garbage>
   void dispose(Garbage garbage) {
     const auto held = std::make_shared<Garbage>(std::move(garbage));
@@ -68,8 +68,8 @@ class Workshop {
   std::condition_variable has_changed_;
   std::queue<std::function<void()>> tasks_;
   bool ends_ = false, is_busy_ = false, wakes_itself_ = false;
-  Clock::time_point last_{};   // when a task last found it idle
-  Clock::duration between_{};  // and how long that was after the one before
+  Clock::time_point last_{};   // when a task last found the thread idle
+  Clock::duration between_{};  // the time between that task and the one before
   std::thread thread_;
 };
 

@@ -62,7 +62,7 @@ std::uint32_t Box2dAttachments::index_of(const Box2dBody* body,
   return static_cast<std::uint32_t>(found - bodies.begin());
 }
 
-/// Box2D asks the filter again about all that touches the bodies of a link.
+/// Makes Box2D ask the filter again about everything that touches the bodies of a link.
 void Box2dAttachments::refilter(const Link& link) {
   if (link.touch || link.a->particles().empty()) return;
   filter_.install();
@@ -216,7 +216,7 @@ void Box2dAttachments::finish(Box2dBody& body, const InStep& in_step, float step
     if (!in_step.pushes[i].isZero(0)) body.move_particle(i, step * in_step.pushes[i]);
 }
 
-/// Of a rigid body among those of the step.
+/// The index of a rigid body among those of the step.
 std::uint32_t Box2dAttachments::number_of(b2Body& rigid, float step) {
   const auto known = std::ranges::find(rigid_bodies_, &rigid);
   if (known != rigid_bodies_.end()) return static_cast<std::uint32_t>(known - rigid_bodies_.begin());
@@ -233,7 +233,7 @@ std::uint32_t Box2dAttachments::number_of(b2Body& rigid, float step) {
   return static_cast<std::uint32_t>(rigids_.size() - 1);
 }
 
-/// Box2D adds gravity after this.
+/// Takes the step's gravity out of velocities, as Box2D adds it after this.
 void Box2dAttachments::move_rigids(float step) const {
   for (std::size_t i = 0; i < rigids_.size(); ++i) {
     b2Body& rigid = *rigid_bodies_[i];
@@ -299,7 +299,7 @@ void Box2dAttachments::solve(std::span<const std::unique_ptr<Box2dBody>> bodies,
   end();
 }
 
-/// Evenly, and in the last step to its goal exactly.
+/// Moves evenly, and in the last step exactly to the goal.
 void Box2dAttachments::Hold::begin(float step) {
   const bool arrives = !(step < seconds);
   const float share = arrives ? 1.0f : step / seconds;

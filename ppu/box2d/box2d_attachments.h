@@ -1,6 +1,6 @@
 #pragma once
-// The attachments of soft bodies in a Box2D world. Those of bodies that touch with circles are solved behind the solver and before Box2D's
-// step, whose contacts come after them; those of bodies that touch with their drawn edges together with contacts.
+// The attachments of soft bodies in a Box2D world. For bodies that touch with circles they are solved after the solver and before Box2D's
+// step, so Box2D's contacts come after them; for bodies that touch with their drawn edges they are solved together with contacts.
 
 #include <box2d/b2_body.h>
 #include <box2d/b2_world.h>
@@ -26,58 +26,58 @@ namespace softcell::ppu {
 class Box2dAttachments {
  public:
   /// @param soft_body_of  the soft body that a b2Body is a particle of; null: none
-  /// @param filter        asks lets(); outlives this
+  /// @param filter        asks lets(); must outlive this object
   Box2dAttachments(b2World& world, std::function<Box2dBody*(const b2Body&)> soft_body_of, Box2dFilter& filter)
       : world_(world), soft_body_of_(std::move(soft_body_of)), filter_(filter) {}
   Box2dAttachments(const Box2dAttachments&) = delete;
   Box2dAttachments& operator=(const Box2dAttachments&) = delete;
 
-  /// To the world, or to a rigid body of it. @throws std::invalid_argument  as Box2dSoftBodies::attach().
+  /// Attaches to the world, or to one of its rigid bodies. @throws std::invalid_argument  as Box2dSoftBodies::attach().
   AttachmentId add(Box2dBody& body, const Patch<2>& patch, b2Body* rigid,
                    const AttachmentSettings<2>& settings);
-  /// To another soft body. @throws as above.
+  /// Attaches to another soft body. @throws as above.
   AttachmentId add(Box2dBody& body, const Patch<2>& patch, Box2dBody& other, const Patch<2>& other_patch,
                    const AttachmentSettings<2>& settings);
-  void remove(AttachmentId id);  ///< @throws std::invalid_argument  there is none of that number.
-  /// @throws std::invalid_argument  there is none of that number, or it is none to the world.
+  void remove(AttachmentId id);  ///< @throws std::invalid_argument  there is no attachment with that number.
+  /// @throws std::invalid_argument  there is no attachment with that number, or it is not to the world.
   void move(AttachmentId id, const Eigen::Vector2f& position, float angle, float seconds);
   std::optional<AttachmentState<2>> state(AttachmentId id) const;
   std::optional<AttachmentEnds<2>> ends(AttachmentId id) const;
   std::vector<EndedAttachment> take_ended();
-  /// Whether no attachment keeps two from touching.
+  /// Whether two bodies may collide as far as attachments are concerned.
   bool lets(const b2Body& a, const b2Body& b) const;
-  /// Whether one keeps a body that Box2D does not know from touching a rigid one.
+  /// Whether an attachment keeps a body that Box2D does not know of from colliding with a rigid one.
   bool parts(const Box2dBody& body, const b2Body& rigid) const;
   using Piece = PieceOfBody<Box2dBody>;
-  /// A body has fallen into pieces, of which it is one itself. Its attachments go on with the piece that has all particles of their patch,
-  /// each of them once. Where none has, they end: their patch has vanished with a piece, or was torn.
+  /// Moves the attachments of a body that has broken into pieces, of which the body itself is one, to the piece that has all particles of
+  /// their patch, each exactly once. If no piece has, they end: their patch has vanished with a piece, or was torn.
   /// @param vanished  as PlannedPieces
   void follow_pieces(const Box2dBody& body, std::span<const Piece> pieces,
                      std::span<const std::vector<std::uint32_t>> vanished);
-  /// A soft body goes, and its attachments with it.
+  /// Removes the attachments of a soft body that is being removed.
   void forget(const Box2dBody& body);
   bool holds(const Box2dBody& body) const;
 
-  /// Begins a step, behind the solver of bodies. @param number_of  a rigid body, as whoever solves knows it
-  /// @return  what is to be solved, of bodies by their indices; to be followed by end()
+  /// Begins a step, after the solver of bodies. @param number_of  the number that the caller gives a rigid body
+  /// @return  the attachments to be solved, with soft bodies by their indices; call end() afterwards
   std::span<const AttachmentInStep<2>> begin(std::span<const std::unique_ptr<Box2dBody>> bodies,
                                              const std::function<std::uint32_t(b2Body&)>& number_of,
                                              float step);
-  /// What has had to carry too much ends.
+  /// Ends attachments that had to carry too much.
   void end();
-  /// A step without contacts, from begin() to end(): changes velocities, and moves particles by what is left of errors of position.
+  /// Does a step without contacts, from begin() to end(): changes velocities, and moves particles to correct the rest of position errors.
   void solve(std::span<const std::unique_ptr<Box2dBody>> bodies, float step);
 
  private:
-  /// Where the world holds a link, and where the program moves that to.
+  /// The place in the world that holds a link, and the place to which the program moves it.
   struct Hold {
     AttachmentFrame<2> frame{};
     Eigen::Vector2f goal{0, 0};
     float angle = 0, goal_angle = 0;  // radians
-    float seconds = 0;                // until it is there
+    float seconds = 0;                // until it arrives
     bool moves = false;
 
-    void begin(float step);  ///< where it will be at the step's end
+    void begin(float step);  ///< sets its place at the step's end
     void end();
   };
   struct Link {
@@ -112,7 +112,7 @@ class Box2dAttachments {
   Box2dFilter& filter_;
   AttachmentLinks<Link> links_;
   std::vector<EndedAttachment> ended_;
-  // Of a step:
+  // For one step:
   std::vector<AttachmentInStep<2>> to_solve_;
   Attachments<2> attachments_;
   std::vector<InStep> in_step_;

@@ -28,7 +28,7 @@ b2Vec2 fall_of(const b2Body& body, const b2Vec2& gravity, float step) {
 float inverse_inertia_of(const b2Body& body) {
   SC_ASSERT(body.GetType() == b2_dynamicBody, "the inertia of a body of type {}",
             static_cast<int>(body.GetType()));
-  // Box2D has it about the body's origin.
+  // Box2D gives the inertia about the body's origin.
   const float inertia = body.GetInertia() - body.GetMass() * body.GetLocalCenter().LengthSquared();
   return !body.IsFixedRotation() && inertia > 0 ? 1 / inertia : 0;
 }

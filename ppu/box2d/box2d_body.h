@@ -1,6 +1,6 @@
 #pragma once
-// One soft body in a Box2D world, whatever it touches with: circles (circle_body.h), or its drawn surface. Box2D knows nothing of the
-// latter: surface_contacts_2d.h moves it.
+// One soft body in a Box2D world, with any kind of contacts: circles (circle_body.h), or its drawn surface. Box2D does not know of a body
+// of the latter kind: surface_contacts_2d.h moves it.
 
 #include <box2d/b2_body.h>
 #include <box2d/b2_world.h>
@@ -27,32 +27,32 @@ class Box2dBody {
   const SoftBody<2>& soft() const { return soft_; }
   const CollisionFilter& filter() const { return filter_; }
   virtual void set_filter(const CollisionFilter& filter) { filter_ = filter; }
-  /// Its b2Bodies, in the order of SoftBodyModel::outer(); none: Box2D does not know it.
+  /// Its b2Bodies, in the order of SoftBodyModel::outer(); empty if Box2D does not know of it.
   virtual std::span<b2Body* const> particles() const { return {}; }
-  /// @param number  of a particle in the body  @return  null: an inner one, or Box2D does not know it
+  /// @param number  of a particle in the body  @return  null: an inner particle, or Box2D does not know of the body
   virtual b2Body* particle(std::uint32_t number) const;
 
-  /// Whether it has become a body of another model, by a break or an assignment: the particles are not its own.
+  /// Whether a break or an assignment has given it another model: its b2Bodies still belong to the old one.
   bool is_of_other_model() const { return model_ != soft_.shared_model(); }
-  /// Gives it those of its model, where it is. @pre no step of Box2D is under way
+  /// Gives it the b2Bodies of its model, at its place. @pre no step of Box2D is under way
   void follow_model();
 
   /// Whether the body's user has changed it since the last step.
   bool was_changed() const { return soft_.revision() != seen_revision_; }
-  /// Whether what is known of its rotations is of no use since then.
+  /// Whether the body's user has reset it since then, so that its known rotations are useless.
   bool was_reset() const { return soft_.resets() != seen_resets_; }
-  /// Whether particles are no longer as they were gathered last, or a sleeping body has a reason to wake.
+  /// Whether particles differ from what was gathered last, or a sleeping body has a reason to wake.
   virtual bool was_pushed() const { return soft_.asleep() && was_disturbed(); }
 
-  /// Before the solver: what the body's user may have done to it, or to its particles in Box2D.
+  /// Called before the solver: takes what the body's user may have done to it, or to its particles in Box2D.
   void begin_step();
-  /// Between steps: particles that their user has moved or pushed in Box2D, as begin_step() takes them.
+  /// Called between steps: takes over particles that their user has moved or pushed in Box2D, as begin_step() does.
   void take_over_particles();
-  /// Moves a particle without a velocity. @param particle  its number in the body  @param way  metres
+  /// Moves a particle without changing its velocity. @param particle  its number in the body  @param way  metres
   void move_particle(std::size_t particle, const Eigen::Vector2f& way);
-  /// Behind the solver: whoever integrates gets the new velocities.
+  /// Called after the solver: passes the new velocities to whoever integrates.
   virtual void hand_over(float /*step*/) {}
-  /// After Box2D's step.
+  /// Called after Box2D's step.
   virtual void end_step(float step);
 
   /// Adds a step to the time for which the body was slower than `speed` (m/s).
@@ -61,21 +61,21 @@ class Box2dBody {
   /// Whether it was too fast to fall asleep at the end of the last step.
   bool moves() const { return stillness_.moves(); }
   void fall_asleep();
-  /// It sleeps again when it has been still for as long again.
+  /// Wakes the body. It falls asleep again after it has been still for as long as at first.
   void wake();
 
  protected:
-  /// Whether gravity is another than when it fell asleep, or Box2D has woken a particle.
+  /// Whether gravity has changed since it fell asleep, or Box2D has woken a particle.
   virtual bool was_disturbed() const;
-  virtual void exchange_particles() {}                      ///< it has another model
-  virtual void gather_particles() {}                        ///< as Box2D has them
-  virtual void place_particles() {}                         ///< where the body is, with its settings
-  virtual void place_particle(std::size_t /*particle*/) {}  ///< likewise, one that may be an inner one
+  virtual void exchange_particles() {}                      ///< called when it has another model
+  virtual void gather_particles() {}                        ///< reads them from Box2D
+  virtual void place_particles() {}                         ///< writes the body's places and settings
+  virtual void place_particle(std::size_t /*particle*/) {}  ///< likewise, for one that may be an inner one
   virtual void set_particles_awake(bool /*awake*/) {}
 
   b2World& world_;
   SoftBody<2> soft_;
-  std::shared_ptr<const SoftBodyModel<2>> model_;  // of its particles
+  std::shared_ptr<const SoftBodyModel<2>> model_;  // the model of its b2Bodies
   CollisionFilter filter_;
 
  private:
@@ -84,13 +84,13 @@ class Box2dBody {
   b2Vec2 gravity_asleep_{0, 0};
 };
 
-/// Whether a world has a body, which may have been destroyed: it is not looked at.
+/// Whether a world has a body. It may have been destroyed, so it is not read.
 bool has_body(const b2World& world, const b2Body* body);
 /// 1/kg; 0: it has no fixture with a density, so that impulses do not move it. @pre it is dynamic
 float inverse_mass_of(const b2Body& body);
-/// m/s: what gravity (m/s^2) gives it in a step of `step` seconds. Box2D lets nothing fall that has no mass.
+/// m/s: the velocity that gravity (m/s^2) adds in a step of `step` seconds. Bodies without mass do not fall in Box2D.
 b2Vec2 fall_of(const b2Body& body, const b2Vec2& gravity, float step);
-/// 1/(kg m^2), about its centre of mass; 0: nothing turns it. @pre it is dynamic
+/// 1/(kg m^2), about its centre of mass; 0: it cannot rotate. @pre it is dynamic
 float inverse_inertia_of(const b2Body& body);
 
 inline bool is_same(const b2Transform& a, const b2Transform& b) {

@@ -1,5 +1,5 @@
 #pragma once
-// Which particles of soft bodies do not touch something: asked by Box2D about any two that are new to each other.
+// A contact filter that keeps particles of soft bodies from touching: Box2D asks it about each new pair of fixtures.
 
 #include <box2d/b2_contact_manager.h>
 #include <box2d/b2_fixture.h>
@@ -13,11 +13,12 @@
 
 namespace softcell::ppu {
 
-/// Nothing of it is in the world before install(). From then on it asks the world's own filter first, which it puts back at its end.
+/// Changes nothing in the world before install(). From then on it asks the world's own filter first, and it restores that filter when it is
+/// destroyed.
 /// Used by the thread that steps the world.
 class Box2dFilter final : private b2ContactFilter {
  public:
-  /// Whether two may touch.
+  /// Answers whether two fixtures may touch.
   using Question = std::function<bool(b2Fixture&, b2Fixture&)>;
 
   Box2dFilter(b2World& world, Question question) : world_(world), question_(std::move(question)) {}
@@ -42,7 +43,7 @@ class Box2dFilter final : private b2ContactFilter {
 
   b2World& world_;
   Question question_;
-  b2ContactFilter* before_ = nullptr;  // the world's, once this one is in its place
+  b2ContactFilter* before_ = nullptr;  // the world's own filter, after install()
 };
 
 }  // namespace softcell::ppu

@@ -24,7 +24,7 @@ RigidLinks Box2dLinks::find(Box2dObstacles& obstacles, std::span<const std::uint
   contacts_.clear();
   rows_.clear();
   joints_.clear();
-  // Each body adds those that it touches or is joined to behind it.
+  // Each body appends those that it touches or is joined to.
   std::size_t first = 0;
   for (int i = 0; i <= kFarthestTouch; ++i) {
     const auto for_each_new = [&](const auto& work) {

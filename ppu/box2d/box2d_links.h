@@ -1,5 +1,5 @@
 #pragma once
-// How rigid bodies near soft ones touch each other or are joined, as Box2D knows it.
+// Finds contacts and joints between rigid bodies near soft ones, as Box2D knows them.
 
 #include <cstdint>
 #include <span>
@@ -10,12 +10,12 @@
 
 namespace softcell::ppu {
 
-/// Used by one thread. Allocates when there are more touches, joints or bodies than ever before.
+/// Used by one thread. Allocates when there are more contacts, joints or bodies than ever before.
 class Box2dLinks {
  public:
-  /// Those of the rigid bodies in `obstacles` that move, of what these touch or are joined to, and so on for a few bodies: what they touch is
-  /// found in `obstacles`, too, from now on. By Box2D's contacts of its last step, and its joints, where bodies are now.
-  /// @param attached  indices of rigid bodies to which soft ones are attached: their touches and joints are left out
+  /// Contacts and joints of the moving rigid bodies in `obstacles`, of the bodies that these touch or are joined to, and so on for a few
+  /// bodies; adds the bodies found to `obstacles`. Uses Box2D's contacts of its last step, and its joints at the bodies' present places.
+  /// @param attached  indices of rigid bodies to which soft ones are attached: their contacts and joints are left out
   /// @param step  seconds
   /// @return  valid until the next call
   RigidLinks find(Box2dObstacles& obstacles, std::span<const std::uint32_t> attached, float step);
@@ -28,8 +28,8 @@ class Box2dLinks {
 
   std::vector<RigidTouch> touches_;
   std::vector<JointRow> rows_;
-  std::vector<b2Contact*> contacts_;  // that touches_ are of
-  std::vector<b2Joint*> joints_;      // that rows_ are of
+  std::vector<b2Contact*> contacts_;  // from which touches_ were made
+  std::vector<b2Joint*> joints_;      // from which rows_ were made
 };
 
 }  // namespace softcell::ppu

@@ -27,7 +27,7 @@ bool may_touch(const b2Fixture& fixture, const CollisionFilter& filter) {
          filter.lets({static_cast<int>(own.categoryBits), static_cast<int>(own.maskBits)});
 }
 
-/// Of an edge, or of one of a chain, in its body's frame.
+/// The ends of an edge fixture, or of one edge of a chain, in its body's frame.
 struct Ends {
   b2Vec2 from, to;
 };
@@ -43,7 +43,7 @@ Ends ends_of(const b2Fixture& fixture, int child) {
   return {edge.m_vertex1, edge.m_vertex2};
 }
 
-/// Of a polygon, in its body's frame; counterclockwise, so that its inside lies to the left.
+/// A face of a polygon, in its body's frame; counterclockwise, so the inside lies to the left.
 Ends face_of(const b2PolygonShape& polygon, int face) {
   return {polygon.m_vertices[face], polygon.m_vertices[(face + 1) % polygon.m_count]};
 }
@@ -117,7 +117,7 @@ class Box2dObstacles::Collector final : public b2QueryCallback {
   Collector(const CollisionFilter& filter, const b2AABB& box, const Box2dObstacles& of,
             std::vector<Found>& found)
       : filter_(filter), box_(box), of_(of), found_(found) {}
-  /// Once for each child whose box is near.
+  /// Adds each child whose box is near.
   bool ReportFixture(b2Fixture* fixture) override {
     if (fixture->IsSensor() != (of_.wanted_ == Fixtures::kSensors) || !may_touch(*fixture, filter_))
       return true;
@@ -155,13 +155,13 @@ void Box2dObstacles::begin(b2World& world, float step, float layer) {
     if (is_under_way(*body)) moving_.push_back(body);
 }
 
-/// What it would be without contacts: Box2D adds gravity later in its step.
+/// The velocity without contacts: Box2D adds gravity later in its step.
 b2Vec2 Box2dObstacles::velocity_of(const b2Body& body) const {
   const b2Vec2 velocity = body.GetLinearVelocity();
   return body.IsAwake() ? velocity + fall_of(body, world_->GetGravity(), step_) : velocity;
 }
 
-/// Box2D has a box around where a fixture has been: of what moves, one around where it comes.
+/// Box2D has a box around the fixture's last place; for a body that moves, this also covers its motion.
 b2AABB Box2dObstacles::box_of_step(const b2Fixture& fixture, int child) const {
   b2AABB box = fixture.GetAABB(child);
   const b2Body& body = *fixture.GetBody();
@@ -180,7 +180,7 @@ std::uint32_t Box2dObstacles::number(const b2Fixture& fixture) {
   return behind;
 }
 
-/// Bodies keep their numbers as long as they are there. The world lists the newest first.
+/// Bodies keep their numbers as long as they exist. The world lists the newest first.
 void Box2dObstacles::number_bodies() {
   unknown_.clear();
   std::size_t count = 0;
@@ -231,7 +231,7 @@ void Box2dObstacles::add_near(const Bounds<3>& box, const Vector2f& middle, cons
   }
 }
 
-/// Of a thin polygon, the face that the body as a whole is in front of.
+/// For a thin polygon: the face that the body as a whole is in front of.
 int Box2dObstacles::face_before(const Found& found, const Bounds<3>& box, const Vector2f& middle) const {
   const b2Fixture& fixture = *found.there;
   if (fixture.GetType() != b2Shape::e_polygon || wanted_ == Fixtures::kSensors) return kWhole;
@@ -262,7 +262,7 @@ std::uint32_t Box2dObstacles::rigid_of(b2Body& body) {
   rigid.centre = lifted(body.GetWorldCenter());
   rigid.velocity = lifted(velocity_of(body));
   rigid.spin = {0, 0, body.GetAngularVelocity()};
-  rigid.friction = 1;  // fixtures have it
+  rigid.friction = 1;  // each fixture has its own
   for (const b2Fixture* fixture = body.GetFixtureList(); fixture != nullptr; fixture = fixture->GetNext())
     rigid.restitution = std::max(rigid.restitution, fixture->GetRestitution());
   if (body.GetType() == b2_dynamicBody) {
@@ -310,7 +310,8 @@ std::uint32_t Box2dObstacles::obstacle_of(const Found& found, int face) {
   return known_.back().obstacle;
 }
 
-/// One obstacle, as what lies between two of its edges may be thinner than what presses into it. Another body may be near other edges.
+/// Makes one obstacle of several edges, because the space between two of them may be thinner than what presses into it. For another body
+/// other edges may be near.
 std::uint32_t Box2dObstacles::obstacle_of_chain(std::span<const Found> edges) {
   b2Fixture& fixture = *edges.front().there;
   Obstacle obstacle = placed_with(fixture);
@@ -319,7 +320,7 @@ std::uint32_t Box2dObstacles::obstacle_of_chain(std::span<const Found> edges) {
   return add(obstacle, shape, fixture);
 }
 
-/// Without a shape.
+/// Sets everything but the shape.
 Obstacle Box2dObstacles::placed_with(b2Fixture& fixture) {
   const b2Transform& pose = fixture.GetBody()->GetTransform();
   Obstacle obstacle;
@@ -330,7 +331,7 @@ Obstacle Box2dObstacles::placed_with(b2Fixture& fixture) {
   return obstacle;
 }
 
-/// @return  its index
+/// @return  the obstacle's index
 std::uint32_t Box2dObstacles::add(Obstacle obstacle, const Shape& shape, b2Fixture& fixture) {
   obstacle.planes = shape.planes;
   obstacle.edges = shape.edges;
@@ -340,7 +341,7 @@ std::uint32_t Box2dObstacles::add(Obstacle obstacle, const Shape& shape, b2Fixtu
   return static_cast<std::uint32_t>(obstacles_.size() - 1);
 }
 
-/// A ball: nothing touches it but at z = 0.
+/// A ball: contacts lie at z = 0, so it acts as a circle.
 void Box2dObstacles::add_circle(const b2Fixture& fixture, Obstacle& obstacle, Shape& shape) {
   const auto& circle = static_cast<const b2CircleShape&>(*fixture.GetShape());
   obstacle.kind = ObstacleKind::kBox;
@@ -349,7 +350,7 @@ void Box2dObstacles::add_circle(const b2Fixture& fixture, Obstacle& obstacle, Sh
   shape.edges.push_back({Vector3f::Zero(), Vector3f::Zero()});
 }
 
-/// Without top and bottom. Its corners are what may be sharper than what it meets.
+/// Has no top and no bottom. Its corners may be sharper than the surface that they meet.
 void Box2dObstacles::add_polygon(const b2Fixture& fixture, Obstacle& obstacle, Shape& shape) {
   const auto& polygon = static_cast<const b2PolygonShape&>(*fixture.GetShape());
   obstacle.kind = ObstacleKind::kHull;
@@ -360,7 +361,7 @@ void Box2dObstacles::add_polygon(const b2Fixture& fixture, Obstacle& obstacle, S
   }
 }
 
-/// Its outside is on the right of the way round.
+/// The outside is to the right when its corners are followed in order.
 void Box2dObstacles::add_face(const b2Fixture& fixture, int face, Obstacle& obstacle, Shape& shape) const {
   const Ends ends = face_of(static_cast<const b2PolygonShape&>(*fixture.GetShape()), face);
   add_wall(ends.from, ends.to, obstacle, shape);
@@ -377,7 +378,7 @@ void Box2dObstacles::add_walls(std::span<const Found> edges, Obstacle& obstacle,
   }
 }
 
-/// As high as the layer and as much again. Its front is on the right of the way from one end to the other.
+/// The wall reaches twice as high as the layer. Its front is to the right when going from `from` to `to`.
 void Box2dObstacles::add_wall(const b2Vec2& from, const b2Vec2& to, Obstacle& obstacle, Shape& shape) const {
   obstacle.kind = ObstacleKind::kTriangles;
   const float high = 2 * layer_;

@@ -1,5 +1,5 @@
 #pragma once
-// What is rigid near soft bodies in two dimensions, as plain data of contacts in three: shapes go on endlessly above and below.
+// Converts the rigid bodies near soft ones from Box2D to plain data for contacts in three dimensions: shapes are infinitely high along z.
 
 #include <box2d/b2_body.h>
 #include <box2d/b2_fixture.h>
@@ -17,49 +17,49 @@
 
 namespace softcell::ppu {
 
-/// The fixtures of a world that are near some boxes: circles, polygons, edges and chains. Edges and chains have two sides, and keep out what
-/// comes to either of them. A body in front of a face of a thin polygon has that face only before it: what is pressed into such a polygon
-/// would leave it on the other side. Used by one thread. Allocates when there are more of them than ever before.
+/// The fixtures of a world that are near some boxes: circles, polygons, edges and chains. Edges and chains have two sides and keep bodies
+/// out on both. In front of a face of a thin polygon, a body sees that face only: otherwise points pressed into the polygon would leave it
+/// on the other side. Used by one thread. Allocates when there are more fixtures than ever before.
 class Box2dObstacles {
  public:
   enum class Fixtures { kSolid, kSensors };
   explicit Box2dObstacles(Fixtures wanted) : wanted_(wanted) {}
 
-  /// Forgets what was near before. @param layer  metres above and below z = 0 in which soft bodies are
+  /// Forgets what was near before. @param layer  soft bodies lie up to this far above and below z = 0, metres
   void begin(b2World& world, float step, float layer);
 
-  /// Appends the indices of all obstacles that are in a box, or come there in the substep, those of one body behind each other, bodies in
-  /// the order in which the world got them.
-  /// @param middle  of the body in the box: says which face of a thin polygon is before it
+  /// Appends the indices of all obstacles that are in a box, or enter it in the substep, sorted by body; bodies come in the order in which
+  /// they were added to the world.
+  /// @param middle  of the soft body in the box: tells which face of a thin polygon it is in front of
   void add_near(const Bounds<3>& box, const Eigen::Vector2f& middle, const CollisionFilter& filter,
                 std::vector<std::uint32_t>& indices);
 
   std::span<const Obstacle> obstacles() const { return obstacles_; }
   std::span<ContactRigid> rigids() { return rigids_; }
-  /// Whose rigids() these are.
+  /// The bodies that rigids() stand for.
   std::span<b2Body* const> bodies() const { return bodies_; }
-  /// Which of rigids() a body is; it is added if it is none yet. @pre begin() was called
+  /// The index of a body in rigids(); adds it if it is missing. @pre begin() was called
   std::uint32_t rigid_of(b2Body& body);
-  /// Of an obstacle.
+  /// The fixture of an obstacle.
   b2Fixture& fixture(std::uint32_t obstacle) const { return *fixtures_[obstacle]; }
 
-  /// Whether the world has a body, which may be destroyed. @pre begin() was called
+  /// Whether the world has a body. It may have been destroyed. @pre begin() was called
   bool has(const b2Body* body) const { return known_bodies_.contains(body); }
 
-  /// Of a body of the world, for as long as it is there.
+  /// A number that a body of the world keeps as long as it exists.
   std::uint32_t number(const b2Body& body) const { return known_bodies_.at(&body).number; }
   /// Of a body of the world: another number when it was enabled or disabled, or a fixture was added, destroyed, made a sensor or solid, or
   /// given another filter or shape. @pre begin() was called
   std::uint64_t look(const b2Body& body);
-  /// How many fixtures a body has got before this one.
+  /// The number of fixtures that the body had before this one.
   static std::uint32_t number(const b2Fixture& fixture);
 
-  /// Gives rigid bodies the velocities that contacts have given their ContactRigid.
+  /// Sets the velocities of rigid bodies to those that contacts have given their ContactRigid.
   void apply();
 
  private:
-  static constexpr int kWhole = -1;      // no face, but all of the fixture
-  static constexpr float kThin = 0.25f;  // cells: as far as something may be pressed through a wall
+  static constexpr int kWhole = -1;      // not a single face, but the whole fixture
+  static constexpr float kThin = 0.25f;  // cells: as far as points may be pressed through a wall
   using Triangle = std::array<Eigen::Vector3f, 3>;
   /// The lists of one obstacle.
   struct Shape {
@@ -69,7 +69,7 @@ class Box2dObstacles {
   };
   struct Found {
     std::uint32_t body;     // its number
-    std::uint32_t fixture;  // how many the body has behind it
+    std::uint32_t fixture;  // how many fixtures the body had before
     int child;
     b2Fixture* there;
     auto operator<=>(const Found&) const = default;
@@ -108,7 +108,7 @@ class Box2dObstacles {
   b2World* world_ = nullptr;
   float step_ = 0, layer_ = 0;
   std::vector<Obstacle> obstacles_;
-  std::vector<b2Fixture*> fixtures_;  // of each obstacle
+  std::vector<b2Fixture*> fixtures_;  // for each obstacle
   std::vector<ContactRigid> rigids_, before_;
   std::vector<b2Body*> bodies_;
   std::unordered_map<const b2Body*, KnownBody> known_bodies_;  // all that the world has

@@ -48,7 +48,7 @@ struct Box2dSoftBodies::Impl {
         workshop(std::in_place) {
     if (contacts == ContactMethod::kSurface) surfaces.emplace(world, std::move(worker));
   }
-  ~Impl() { workshop.reset(); }  // it works with all of this
+  ~Impl() { workshop.reset(); }  // its threads use all of this
 
   template <typename Work>
   void timed(const Work& work) {
@@ -96,7 +96,7 @@ struct Box2dSoftBodies::Impl {
     }
   }
 
-  /// Null for a b2Body that is no particle.
+  /// Null if the b2Body is not a particle.
   Box2dBody* soft_body_of(const b2Body& body) const {
     const auto found = particles.find(&body);
     return found == particles.end() ? nullptr : found->second.body;
@@ -115,7 +115,7 @@ struct Box2dSoftBodies::Impl {
     if (coupled.is_of_other_model()) take_other_model(coupled);
     return coupled;
   }
-  /// Not breaking any more, and its particles as Box2D has them. @throws as above
+  /// The body, after its running break has ended, with its particles as in Box2D. @throws as above
   Box2dBody& find_breakable(const SoftBody<2>& body) {
     Box2dBody& coupled = **find(body, "to be cut");
     SC_ASSERT(!world.IsLocked(), "one of {} bodies is cut within a step of Box2D", bodies.size());
@@ -134,7 +134,7 @@ struct Box2dSoftBodies::Impl {
       throw std::runtime_error(
           "a Box2D world has at most 32768 soft bodies: there are no more collision groups");
   }
-  /// The negative group nearest to 0 that no body has.
+  /// The unused negative group nearest to 0.
   std::int16_t free_group() const {
     std::vector<bool> used(kMostBodies + 1);
     for (const auto& body : bodies)
@@ -164,7 +164,7 @@ struct Box2dSoftBodies::Impl {
   void forget_particles(const Box2dBody& body) {
     for (const b2Body* const particle : body.particles()) particles.erase(particle);
   }
-  /// Gives a body the particles of its model. @return what those before did not touch
+  /// Gives a body the particles of its model. @return the pairs with the old particles that did not touch
   std::vector<PartingPieces::Kept> follow_model(Box2dBody& body) {
     std::vector<PartingPieces::Kept> kept = parting.take(body);
     forget_particles(body);
@@ -172,13 +172,13 @@ struct Box2dSoftBodies::Impl {
     know_particles(body);
     return kept;
   }
-  /// By an assignment.
+  /// Handles another model by an assignment.
   void take_other_model(Box2dBody& body) {
     attachments.forget(body);
     follow_model(body);
   }
 
-  /// Pieces, and what touches of each that stays, if they touch with their drawn edges.
+  /// Pieces, and the contact models of those that stay, if bodies touch with their drawn edges.
   struct Pieces {
     PlannedPieces<2> planned;
     std::vector<std::unique_ptr<SurfaceContacts2d::Model>> touching;
@@ -191,7 +191,7 @@ struct Box2dSoftBodies::Impl {
     for (Break& one : breaks.take_due()) put_pieces(*one.body, one.pieces.get(), one.faces);
   }
 
-  /// @param steps  to come, until there are pieces
+  /// @param steps  from now until the pieces appear
   void begin_break(Box2dBody& body, std::span<const std::uint32_t> faces, int steps) {
     const std::shared_ptr<const SoftBodyModel<2>>& model = body.soft().shared_model();
     if (steps == 0) {
@@ -210,7 +210,7 @@ struct Box2dSoftBodies::Impl {
     return surfaces ? &surfaces->whole_of(model) : nullptr;
   }
 
-  /// Of any thread. @param least_cells  as plan_pieces()  @param whole  whole_of() the model
+  /// May run on any thread. @param least_cells  as plan_pieces()  @param whole  whole_of() the model
   Pieces make_pieces(const std::shared_ptr<const SoftBodyModel<2>>& model,
                      std::span<const std::uint32_t> faces, std::uint32_t least_cells,
                      const SurfaceContacts2d::Model* whole) {
@@ -223,7 +223,7 @@ struct Box2dSoftBodies::Impl {
     return pieces;
   }
 
-  /// @param faces  that broke   @return what stays beside the body itself
+  /// @param faces  that broke   @return the pieces that stay, except for the body itself
   /// @throws std::runtime_error  there are too many pieces; nothing has changed then
   std::vector<SoftBody<2>*> put_pieces(Box2dBody& body, Pieces made, std::size_t faces) {
     std::vector<BodyPiece<2>>& planned = made.planned.stay;
@@ -266,12 +266,12 @@ struct Box2dSoftBodies::Impl {
     return event.pieces;
   }
 
-  /// Of what is drawn now.
+  /// A query of the outline as it is drawn now.
   SurfaceQuery<2> query(const SoftBody<2>& soft) {
     return surfaces ? SurfaceQuery<2>(soft, surfaces->skin(soft.shared_model())) : SurfaceQuery<2>(soft);
   }
 
-  /// What a b2Body stands for.
+  /// The particle that a b2Body stands for.
   struct OneParticle {
     Box2dBody* body;
     std::size_t number;
@@ -290,8 +290,8 @@ struct Box2dSoftBodies::Impl {
   std::chrono::nanoseconds spent{0}, waited{0};
   StepAhead<2> solve;                    // of `bodies`
   BreaksOfBodies breaks;                 // of `bodies`
-  std::vector<BrokenSoftBody2d> broken;  // since they were asked for
-  std::optional<Workshop> workshop;      // until the end of what it works with
+  std::vector<BrokenSoftBody2d> broken;  // since the last call that returned them
+  std::optional<Workshop> workshop;      // until its work has ended
 };
 
 Box2dSoftBodies::Box2dSoftBodies(b2World& world, ContactMethod contacts)
@@ -392,7 +392,7 @@ void Box2dSoftBodies::set_filter(const SoftBody<2>& body, const CollisionFilter&
   if (impl_->surfaces) impl_->surfaces->tell_those_on(coupled);
 }
 
-/// @throws std::invalid_argument  it is no length of time
+/// @throws std::invalid_argument  the step is negative or not finite
 static bool passes_time(float step) {
   if (!(step >= 0) || !std::isfinite(step))
     throw std::invalid_argument("Box2dSoftBodies: a step of " + base::shortest(step) +
@@ -459,7 +459,7 @@ std::optional<SoftRayHit2d> Box2dSoftBodies::cast_ray(const Eigen::Vector2f& fro
   std::optional<SoftRayHit2d> nearest;
   for (const auto& body : impl_->bodies) {
     const SoftBody<2>& soft = body->soft();
-    // What is drawn lies beyond the particles by half a cell at most, which may be stretched, but not further than the body.
+    // The drawn outline reaches at most half a cell beyond the particles. That half may be stretched, but not by more than the body's size.
     const Bounds<2> box = soft.bounds();
     const Eigen::Vector2f size = box.high - box.low;
     if (!body->filter().lets(filter) ||

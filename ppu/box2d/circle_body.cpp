@@ -40,7 +40,7 @@ void CircleBody::add_particle(std::uint32_t number) {
   definition.position = to_box2d(soft_.position(number));
   definition.linearVelocity = to_box2d(soft_.velocities()[number]);
   definition.fixedRotation = true;
-  // A particle alone never sleeps: its neighbours would be pulled towards one that hangs still.
+  // A single particle never sleeps: its neighbours would be pulled towards one that hangs still.
   definition.allowSleep = false;
   b2Body* const particle = world_.CreateBody(&definition);
   b2CircleShape circle;
@@ -52,7 +52,7 @@ void CircleBody::add_particle(std::uint32_t number) {
   fixture.restitution = soft_.settings().restitution;
   fixture.filter = own_filter();
   particle->CreateFixture(&fixture);
-  // All of it: braces alone leave the centre unset, as b2Vec2 has a constructor that does nothing.
+  // Set all members: braces alone leave the centre unset, as b2Vec2 has a constructor that does nothing.
   const b2MassData mass{.mass = soft_.model().masses()[number], .center = {0, 0}, .I = 0};
   particle->SetMassData(&mass);
   particles_.push_back(particle);
@@ -74,7 +74,7 @@ void CircleBody::set_filter(const CollisionFilter& filter) {
       fixture->SetFilterData(own_filter());
 }
 
-/// Box2D has woken a particle because something that moves touches it, or what it touched is gone.
+/// Whether Box2D has woken a particle, because something that moves touches it, or what it touched is gone.
 bool CircleBody::was_disturbed() const {
   return Box2dBody::was_disturbed() ||
          std::ranges::any_of(particles_, [](const b2Body* particle) { return particle->IsAwake(); }) ||
@@ -144,7 +144,7 @@ void CircleBody::end_step(float step) {
   if (soft_.asleep()) {
     if (!was_disturbed()) return;
     wake();
-    gather_particles();  // Box2D has moved only what was touched: inner particles stay where they are as well
+    gather_particles();  // Box2D has moved only the touched particles; inner ones stay in place
     return;
   }
   gather_particles();
@@ -162,7 +162,7 @@ void CircleBody::gather_particles() {
   }
 }
 
-/// The body was changed by its user: so are its particles.
+/// The user has changed the body: moves its particles in Box2D.
 void CircleBody::place_particles() {
   const auto outer = soft_.model().outer();
   for (std::size_t i = 0; i < outer.size(); ++i) {
@@ -178,7 +178,7 @@ void CircleBody::place_particles() {
     particle->GetFixtureList()->SetFriction(soft_.settings().friction);
     particle->GetFixtureList()->SetRestitution(soft_.settings().restitution);
     for (b2ContactEdge* edge = particle->GetContactList(); edge != nullptr; edge = edge->next) {
-      edge->contact->ResetFriction();  // contacts keep what they began with
+      edge->contact->ResetFriction();  // contacts keep their first values
       edge->contact->ResetRestitution();
     }
   }

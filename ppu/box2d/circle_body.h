@@ -1,5 +1,5 @@
 #pragma once
-// A soft body of which each outer particle is a b2Body: a circle.
+// A soft body whose outer particles are b2Bodies with a circle each.
 
 #include <box2d/b2_fixture.h>
 
@@ -14,7 +14,7 @@ namespace softcell::ppu {
 /// Its particles are in the order of SoftBodyModel::outer().
 class CircleBody final : public Box2dBody {
  public:
-  /// @param group  below 0, no other body's: Box2D makes no contacts within a negative group.
+  /// @param group  below 0 and used by no other body: Box2D makes no contacts within a negative group.
   CircleBody(b2World& world, SoftBody<2> soft, std::int16_t group);
   ~CircleBody() override;
 
@@ -24,9 +24,9 @@ class CircleBody final : public Box2dBody {
 
   void set_filter(const CollisionFilter& filter) override;
   bool was_pushed() const override;
-  /// Box2D integrates with the new velocities.
+  /// Sets the new velocities, with which Box2D integrates.
   void hand_over(float step) override;
-  /// Outer particles are taken over, inner ones follow.
+  /// Takes over outer particles from Box2D; inner ones follow them.
   void end_step(float step) override;
 
  private:
@@ -52,7 +52,7 @@ class CircleBody final : public Box2dBody {
   std::int16_t group_;
   std::vector<b2Body*> particles_;
   std::vector<Support> supports_;   // while it sleeps
-  std::vector<b2Body*> of_number_;  // by the particle's number in the body; null: an inner one
+  std::vector<b2Body*> of_number_;  // by the particle's number in the body; null: an inner particle
 };
 
 }  // namespace softcell::ppu

@@ -15,7 +15,7 @@
 namespace softcell::ppu {
 namespace {
 
-/// Writes the rows of one joint: of its second body against its first one.
+/// Writes the rows of one joint: its second body against its first one.
 class Rows {
  public:
   Rows(b2Joint& joint, std::uint32_t a, std::uint32_t b, float step, std::vector<JointRow>& rows)
@@ -28,12 +28,12 @@ class Rows {
         arm_b_(at_b_ - joint.GetBodyB()->GetWorldCenter()),
         reach_a_(at_b_ - joint.GetBodyA()->GetWorldCenter()) {}
 
-  /// The two anchors stay together.
+  /// Keeps the two anchors together.
   void pin() {
     for (const b2Vec2 axis : {b2Vec2(1, 0), b2Vec2(0, 1)})
       add({.of_a = share(axis, arm_a_, -1), .of_b = share(axis, arm_b_, 1)});
   }
-  /// The second anchor against the first body.
+  /// Moves the second anchor relative to the first body.
   JointRow along(const b2Vec2& axis) const {
     return {.of_a = share(axis, reach_a_, -1), .of_b = share(axis, arm_b_, 1)};
   }
@@ -48,7 +48,7 @@ class Rows {
     row.least = -step_ * force, row.most = step_ * force;
     add(row);
   }
-  /// Box2D's soft constraint: a spring of a stiffness and damping, off by an error.
+  /// Box2D's soft constraint: a spring with a stiffness and a damping, at a position error.
   void add_spring(JointRow row, float error, float stiffness, float damping) {
     const float gives_way = step_ * (damping + step_ * stiffness);
     if (!(gives_way > 0)) return;
@@ -56,7 +56,7 @@ class Rows {
     row.target = -error * step_ * stiffness / gives_way;
     add(row);
   }
-  /// From where it is it may go back and on by so much. @param on  infinite: without end
+  /// Limits the motion from the present place to `back` backwards and `on` forwards. @param on  infinite: no limit
   void add_limits(JointRow row, float back, float on) {
     row.least = 0;
     row.target = -std::max(0.0f, back) / step_;
@@ -132,7 +132,7 @@ void add_rows(b2DistanceJoint& joint, Rows& rows) {
   rows.add_limits(along, length - joint.GetMinLength(), joint.GetMaxLength() - length);
 }
 
-/// Ropes from two anchors over two wheels: what one gets longer the other gets shorter.
+/// Ropes from two anchors over two pulleys: one gets longer by as much as the other gets shorter.
 void add_rows(b2PulleyJoint& joint, Rows& rows) {
   b2Vec2 rope_a = joint.GetAnchorA() - joint.GetGroundAnchorA();
   b2Vec2 rope_b = joint.GetAnchorB() - joint.GetGroundAnchorB();

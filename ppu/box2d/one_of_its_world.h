@@ -1,5 +1,5 @@
 #pragma once
-// A Box2D world has one object with soft bodies: its step is that object's.
+// Ensures that a Box2D world has only one object with soft bodies, as that object does the world's step.
 
 #include <algorithm>
 #include <mutex>
@@ -10,11 +10,11 @@ class b2World;
 
 namespace softcell::ppu {
 
-/// Box2D has no place of ours in a world, so those that have an object are a list of the process, behind a mutex: worlds may be
-/// used by different threads.
+/// Box2D offers no place in a world for such data, so a list of the process, behind a mutex, holds the worlds that have an object:
+/// different threads may use different worlds.
 class OneOfItsWorld {
  public:
-  /// @throws std::invalid_argument  the world has one already.
+  /// @throws std::invalid_argument  the world already has one.
   explicit OneOfItsWorld(const b2World& world) : world_(&world) {
     const std::lock_guard lock(mutex());
     if (std::ranges::find(worlds(), world_) != worlds().end())

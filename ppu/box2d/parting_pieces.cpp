@@ -18,7 +18,7 @@ void PartingPieces::add(const Pair& pair) {
   if (keys_.insert(key_of(pair.a.particle(), pair.b.particle())).second) pairs_.push_back(pair);
 }
 
-/// Circles in their order along x: what is farther off than the widest one reaches is not looked at.
+/// Sorts circles along x, so that pairs farther apart than the widest one reaches are skipped.
 void PartingPieces::add(std::span<Box2dBody* const> pieces) {
   std::vector<Side> circles;
   float widest = 0;
@@ -69,7 +69,7 @@ void PartingPieces::update() {
   std::erase_if(pairs_, [&](const Pair& pair) {
     if (!pair.is_apart()) return false;
     keys_.erase(key_of(pair.a.particle(), pair.b.particle()));
-    // Box2D asks again.
+    // Makes Box2D ask again.
     pair.a.particle().GetFixtureList()->Refilter();
     pair.b.particle().GetFixtureList()->Refilter();
     return true;

@@ -1,6 +1,6 @@
 #pragma once
-// Pieces of a broken body that are still in each other: particles at a crack become several at one place, whose circles cover each other.
-// They would be pushed apart by a cell at once, in any direction. So two of them touch only after they have been apart.
+// Pieces of a broken body that still overlap: a particle at a crack is split into several at one place, whose circles overlap. A contact
+// would push them apart by a cell at once, in any direction. So two such particles touch only after they have been apart.
 
 #include <box2d/b2_body.h>
 
@@ -18,23 +18,23 @@ namespace softcell::ppu {
 /// Used by the thread that steps the world.
 class PartingPieces {
  public:
-  /// Bodies that have come from one, before the next step: pairs of their particles that cover each other do not touch.
+  /// Adds pieces of one body before the next step: pairs of their particles that overlap do not touch.
   void add(std::span<Box2dBody* const> pieces);
   bool empty() const { return pairs_.empty(); }
-  /// Whether two may touch.
+  /// Whether two particles may touch.
   bool lets(const b2Body& a, const b2Body& b) const;
 
-  /// A particle of another body that does not touch a particle of one.
+  /// A particle of another body that must not touch a particle of this one.
   struct Kept {
     Box2dBody* other;
-    std::uint32_t number_of_other, number;  ///< of particles in the other body and in the one
+    std::uint32_t number_of_other, number;  ///< numbers of the particles in the other body and in this one
   };
-  /// The body gets other particles, or goes. @return what it did not touch, in the order in which that began
+  /// Removes the pairs of a body that gets other particles or is removed. @return its pairs, in the order in which they were added
   std::vector<Kept> take(const Box2dBody& body);
-  /// What a body did not touch before it broke, its piece does not touch either. @param particle_of  of each particle of the piece
+  /// Passes the pairs of a body that broke to its piece. @param particle_of  for each particle of the piece: its number in the whole
   void keep(std::span<const Kept> kept, Box2dBody& piece, std::span<const std::uint32_t> particle_of);
 
-  /// After a step: those that are apart touch from now on.
+  /// Call it after a step: pairs that are apart touch from now on.
   void update();
 
  private:
@@ -54,7 +54,7 @@ class PartingPieces {
   }
   void add(const Pair& pair);
 
-  std::vector<Pair> pairs_;  // in the order in which they began, which reaches the order of Box2D's contacts
+  std::vector<Pair> pairs_;  // as they were added: this determines the order of Box2D's contacts
   std::set<Key> keys_;       // of `pairs_`
 };
 

@@ -29,7 +29,7 @@ bool Rest::rests(const b2Body& body, const SleepSettings& settings) const {
          (body.GetType() == b2_kinematicBody || (world_.GetAllowSleeping() && body.IsSleepingAllowed()));
 }
 
-/// What already sleeps, or never moves, keeps nobody awake.
+/// A body that already sleeps, or never moves, keeps nobody awake.
 void Rest::add(b2Body& body) {
   if (Box2dBody* const soft = soft_body_of_(body))
     add(*soft);
@@ -77,7 +77,7 @@ std::span<Box2dBody* const> Rest::settle(Box2dBody& body, const SleepSettings& s
   }
   for (Box2dBody* const resting : soft_) resting->fall_asleep();
   for (b2Body* const resting : rigid_)
-    if (resting->GetType() == b2_dynamicBody) resting->SetAwake(false);  // others would stop
+    if (resting->GetType() == b2_dynamicBody) resting->SetAwake(false);  // bodies of other types would stop
   return soft_;
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// Which soft bodies of a Box2D world may fall asleep, and with what.
+// Decides which soft bodies of a Box2D world may fall asleep, and together with which others.
 
 #include <box2d/b2_world.h>
 
@@ -13,15 +13,14 @@
 
 namespace softcell::ppu {
 
-/// Who presses on whom among soft bodies that Box2D does not know.
+/// Contacts of soft bodies that Box2D does not know of.
 struct SoftTouches {
   std::vector<std::pair<Box2dBody*, Box2dBody*>> soft;
   std::vector<std::pair<Box2dBody*, b2Body*>> rigid;
 };
 
-/// What touches, or hangs together by joints, rests as a whole or not at all: soft bodies and those rigid ones
-/// that can move. Were bodies to fall asleep one by one, those that are awake yet would wake those below them
-/// again and again.
+/// Bodies that touch or are joined, soft ones and rigid ones that can move, fall asleep together or not at all. If bodies fell asleep one
+/// by one, those that are still awake would wake those below them again and again.
 class Rest {
  public:
   /// The soft body of a b2Body, null for others.
@@ -31,8 +30,8 @@ class Rest {
       : world_(world), soft_body_of_(std::move(soft_body_of)) {}
 
   /// Puts `body` to sleep with all that it touches, if all of it has been at rest for long enough.
-  /// @param touches  besides those that Box2D knows
-  /// @return  the soft ones  @pre  the body is awake
+  /// @param touches  contacts besides those that Box2D knows of
+  /// @return  the soft bodies put to sleep  @pre  the body is awake
   std::span<Box2dBody* const> settle(Box2dBody& body, const SleepSettings& settings,
                                      const SoftTouches& touches);
 
@@ -46,7 +45,7 @@ class Rest {
 
   const b2World& world_;
   SoftBodyOf soft_body_of_;
-  std::vector<Box2dBody*> soft_;  // what was reached so far
+  std::vector<Box2dBody*> soft_;  // bodies reached so far
   std::vector<b2Body*> rigid_;
 };
 

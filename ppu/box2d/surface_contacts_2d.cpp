@@ -14,11 +14,11 @@ namespace {
 using Eigen::Vector2f;
 using Eigen::Vector3f;
 
-/// SPEs are asked ten times in a step, which takes longer than the contacts of so few. Once asked they are in every step: they know ways
-/// from the step before.
+/// Handing work to SPEs ten times in a step takes longer than the contacts of so few particles. Once SPEs are used, they are used in every
+/// step: they need the motion from the step before.
 constexpr std::size_t kFewParticles = 1000;
 
-/// Kinematic bodies, too.
+/// Also for kinematic bodies.
 bool moves(const b2Body& body) {
   constexpr float kMoves = 0.05f;  // m/s and rad/s
   return body.GetType() != b2_staticBody && body.IsAwake() &&
@@ -39,7 +39,7 @@ SurfaceContacts2d::SurfaceContacts2d(b2World& world, std::shared_ptr<ContactWork
   stage_.attachments = &attachments_;
 }
 
-/// It is drawn as its part of the whole, and touches as it is drawn.
+/// A piece is drawn as its part of the whole, and touches as it is drawn.
 std::unique_ptr<SurfaceContacts2d::Model> SurfaceContacts2d::make_piece(
     const std::shared_ptr<const SoftBodyModel<2>>& piece, const Model& whole) {
   return std::make_unique<Model>(piece, skin_of_piece(whole.skin, whole.model->lattice(), piece->lattice()));
@@ -52,7 +52,7 @@ void SurfaceContacts2d::adopt(std::unique_ptr<Model> piece) {
 
 const SurfaceContacts2d::Model& SurfaceContacts2d::model_of(
     const std::shared_ptr<const SoftBodyModel<2>>& model) {
-  std::unique_ptr<Model>& known = models_[model.get()];  // stays where it is, whatever else comes
+  std::unique_ptr<Model>& known = models_[model.get()];  // keeps its address, even when others are added
   if (known) return *known;
   known = model->is_piece() ? make_piece(model, whole_of(model))
                             : std::make_unique<Model>(model, touching_skin(*model));
@@ -73,7 +73,7 @@ void SurfaceContacts2d::lift(const Box2dBody& body, Kept& kept, float step) {
   for (Vector3f& v : kept.velocities) v.head<2>() += fall;
 }
 
-/// Attached bodies do not sleep.
+/// Attached bodies do not sleep: wakes the rigid ones.
 void SurfaceContacts2d::begin_attachments(Bodies bodies, Box2dAttachments& attachments, float step) {
   const auto number_of = [&](b2Body& rigid) {
     if (rigid.GetType() == b2_dynamicBody) rigid.SetAwake(true);
@@ -131,7 +131,7 @@ void SurfaceContacts2d::see(Kept& kept, b2Body& body) {
     kept.seen.push_back(as_it_is(body));
 }
 
-/// What lies beside it has begun to move, or what it lies on is gone.
+/// Whether a body beside the sleeping one has begun to move, or one that it lies on is gone.
 bool SurfaceContacts2d::must_wake(Kept& kept, const SoftBody<2>& sleeper, const BodyInStage& in_stage) {
   constexpr float kCreep = 0.02f;  // cells: more than contacts let something be in the sleeper
   const float far = kCreep * sleeper.model().lattice().spacing;
@@ -155,7 +155,7 @@ bool SurfaceContacts2d::must_wake(Kept& kept, const SoftBody<2>& sleeper, const 
          std::ranges::any_of(kept.seen, is_gone_or_elsewhere);
 }
 
-/// It is awake: what has slept with it wakes, too.
+/// Wakes what has slept together with this body, which is awake now.
 void SurfaceContacts2d::rise(Kept& kept) {
   for (const Support& support : kept.supports)
     if (has_body(world_, support.body) && support.body->GetType() == b2_dynamicBody)
@@ -165,7 +165,7 @@ void SurfaceContacts2d::rise(Kept& kept) {
   kept.lost_support = false;
 }
 
-/// Before anything is solved: what sleeps would stop like a wall whatever hits it, and take its momentum away.
+/// Wakes bodies before anything is solved: a sleeping body would stop everything that hits it like a wall, and absorb its momentum.
 void SurfaceContacts2d::wake_those_in_the_way(Bodies bodies) {
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     BodyInStage& sleeper = in_stage_[i];
@@ -193,7 +193,7 @@ void SurfaceContacts2d::step(Bodies bodies, Box2dAttachments& attachments, float
   begin(bodies, attachments, step);
   wake_those_in_the_way(bodies);
   stage_.settings.bounces = {
-      .least_speed = 1,  // Box2D's threshold of restitution
+      .least_speed = 1,  // Box2D's threshold for restitution
       .gravity = {world_.GetGravity().x, world_.GetGravity().y, 0},
       .mix = BounceSettings::Mix::kLarger,
   };
@@ -225,7 +225,7 @@ void SurfaceContacts2d::move(Bodies bodies, float step) {
   }
 }
 
-/// What presses on a body that is awake stays awake.
+/// Keeps rigid bodies awake that press on a soft body which is awake.
 void SurfaceContacts2d::note_touches(Bodies bodies) {
   pressing_.clear();
   stage_.append_contacts(pressing_);
@@ -263,7 +263,7 @@ void SurfaceContacts2d::log_touches(Bodies bodies) {
   }
 }
 
-/// Of bodies where the step has moved them, also of those that sleep.
+/// Uses bodies' places after the step, also those of sleeping bodies.
 void SurfaceContacts2d::log_sensors(Bodies bodies, float step) {
   sensors_.begin(world_, step, largest_cell(bodies));
   for (const auto& body : bodies) {

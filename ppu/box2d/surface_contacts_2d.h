@@ -1,5 +1,5 @@
 #pragma once
-// The contacts of all soft bodies of a Box2dSoftBodies that touch with their drawn edges.
+// Handles the contacts of all soft bodies of a Box2dSoftBodies that touch with their drawn edges.
 
 #include <box2d/b2_world.h>
 
@@ -28,7 +28,7 @@ namespace softcell::ppu {
 class SurfaceContacts2d {
  public:
   using Bodies = std::span<const std::unique_ptr<Box2dBody>>;
-  /// What bodies of one model share.
+  /// The data that bodies of one model share.
   struct Model {
     Model(std::shared_ptr<const SoftBodyModel<2>> shared, Skin2d drawn)
         : model(std::move(shared)), skin(std::move(drawn)), layer(*model, skin), contact(layer) {}
@@ -38,42 +38,42 @@ class SurfaceContacts2d {
     ContactModel contact;
   };
 
-  /// @param worker  finds and solves contacts; null: the thread that steps the world does
+  /// @param worker  finds and solves contacts; null: the thread that steps the world does it
   SurfaceContacts2d(b2World& world, std::shared_ptr<ContactWorker> worker);
 
-  /// Behind the solver of a step: adds gravity to velocities, finds contacts, solves them with attachments, moves all particles of bodies
-  /// that are awake, and gives rigid bodies their impulses before Box2D integrates them. Bodies that are touched wake.
+  /// Called after the solver of a step: adds gravity to velocities, finds contacts, solves them together with attachments, moves all
+  /// particles of bodies that are awake, and gives rigid bodies their impulses before Box2D integrates them. Wakes bodies that are touched.
   void step(Bodies bodies, Box2dAttachments& attachments, float step);
 
-  /// How bodies of a model are drawn, if not as make_skin_2d() makes it. No effect: a body of the model has touched before.
+  /// Sets how bodies of a model are drawn, if not by make_skin_2d(). Has no effect once a body of the model has been in a step.
   void draw(const std::shared_ptr<const SoftBodyModel<2>>& model, const Skin2d& skin);
 
-  /// What pieces of bodies of a model are made from. It stays.
+  /// The model from which pieces of its bodies are made. The reference stays valid.
   const Model& whole_of(const std::shared_ptr<const SoftBodyModel<2>>& model) {
     return model_of(model->is_piece() ? model->whole() : model);
   }
-  /// Of any thread. @param whole  whole_of() the body that breaks
+  /// May run on any thread. @param whole  whole_of() the body that breaks
   static std::unique_ptr<Model> make_piece(const std::shared_ptr<const SoftBodyModel<2>>& piece,
                                            const Model& whole);
-  /// Keeps what make_piece() has made.
+  /// Keeps a model that make_piece() has made.
   void adopt(std::unique_ptr<Model> piece);
 
-  /// Who pressed on whom in the last step.
+  /// Contacts of the last step with an impulse above 0.
   const SoftTouches& touches() const { return touches_; }
-  /// Appends the contacts of the last step that press.
+  /// Appends the contacts of the last step whose impulse is above 0.
   void append_contacts(std::vector<Contact2d>& contacts) const;
 
-  /// Whether events are kept from the next step on.
+  /// Sets whether events are recorded from the next step on.
   void watch(bool events);
-  /// What has begun, gone on or ended since the last call.
+  /// Touches that have begun, gone on or ended since the last call.
   std::vector<ContactEvent2d> poll_events() { return log_.poll(); }
 
-  /// How a body of the model is drawn: what touches.
+  /// How a body of the model is drawn: this outline touches.
   const Skin2d& skin(const std::shared_ptr<const SoftBodyModel<2>>& model) { return model_of(model).skin; }
 
-  /// A body has fallen asleep, with what it touches.
+  /// Records that a body has fallen asleep, with what it touches.
   void let_lie(const Box2dBody& body);
-  /// A body goes: those that lie on it wake.
+  /// Wakes the bodies that lie on a body which is being removed.
   void forget(const Box2dBody& body);
   /// A body goes, or may go, from where it is, or no longer touches what it did: likewise.
   void tell_those_on(const Box2dBody& body);
@@ -84,7 +84,7 @@ class SurfaceContacts2d {
   };
   /// A body has become the first of these pieces. @param whole  the model that it had
   void follow_pieces(const Box2dBody& body, const SoftBodyModel<2>& whole, std::span<const Piece> pieces);
-  /// Frees what is kept of pieces that none of these bodies is any longer. @pre between steps
+  /// Frees what is kept of pieces if none of these bodies has their model any longer. @pre between steps
   void forget_pieces(Bodies bodies);
 
  private:
@@ -94,9 +94,9 @@ class SurfaceContacts2d {
     b2Transform pose;
     std::uint64_t look;  // Box2dObstacles::look()
   };
-  /// What is kept of a body.
+  /// What is kept of each body.
   struct Kept {
-    std::uint32_t number = 0;      // in the order in which bodies came
+    std::uint32_t number = 0;      // in the order in which bodies were added
     const Model* model = nullptr;  // null: the body is new
     KnownSides sides;
     Eigen::Vector2f place_of_sides{0, 0};                // of the first particle, since they are known
@@ -104,7 +104,7 @@ class SurfaceContacts2d {
     std::vector<Support> supports;                       // while it sleeps
     std::vector<const Box2dBody*> lies_on;               // likewise
     bool lost_support = false;                           // one of these is gone
-    std::vector<Support> seen;  // what lies near, where it was at first, while it sleeps
+    std::vector<Support> seen;  // bodies near it while it sleeps, with the places where they were first seen
     bool lies() const { return lost_support || !supports.empty() || !lies_on.empty(); }
   };
 
@@ -137,13 +137,13 @@ class SurfaceContacts2d {
   std::vector<PressingContact> pressing_;  // of the last step
   SoftTouches touches_;
   std::uint32_t next_number_ = 0;
-  // While events are kept:
+  // Used while events are recorded:
   bool watches_ = false;
   TouchLog<ContactEvent2d> log_;
   Box2dObstacles sensors_{Box2dObstacles::Fixtures::kSensors};
-  std::vector<std::uint32_t> near_;     // sensors_ near a body
-  std::vector<Eigen::Vector3f> moved_;  // where a body near one is
-  CellFinder cells_;                    // of it
+  std::vector<std::uint32_t> near_;     // those of sensors_ near a body
+  std::vector<Eigen::Vector3f> moved_;  // the present places of a body near a sensor
+  CellFinder cells_;                    // of that body
 };
 
 }  // namespace softcell::ppu

@@ -10,7 +10,7 @@
 namespace softcell::ppu {
 namespace {
 
-/// Bullet lets a callback be set but not read.
+/// Gives access to the pre-tick callback: Bullet lets it be set but not read.
 struct TickSlot : btDynamicsWorld {
   static constexpr btInternalTickCallback btDynamicsWorld::*kPreTick = &TickSlot::m_internalPreTickCallback;
 };
@@ -49,7 +49,7 @@ BulletHook::BulletHook(btDiscreteDynamicsWorld& world)
 }
 
 void BulletHook::uninstall() {
-  // Somebody who installed his own later keeps it.
+  // Keep a callback that somebody else has installed later.
   if (world_.*TickSlot::kPreTick == &on_pre_tick) {
     world_.setInternalTickCallback(previous_tick_, world_.getWorldUserInfo(), true);
   }

@@ -1,5 +1,5 @@
 #pragma once
-// What soft bodies install in a Bullet world, once however many clients there are.
+// The callbacks that soft bodies install in a Bullet world, once for all clients of the world.
 
 #include <BulletCollision/BroadphaseCollision/btOverlappingPairCache.h>
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
@@ -9,7 +9,7 @@
 
 namespace softcell::ppu {
 
-/// Is called at the beginning of every internal substep.
+/// Called at the beginning of every internal substep.
 class SubstepClient {
  public:
   virtual void begin_substep(float step) = 0;  ///< `step` in seconds
@@ -18,27 +18,27 @@ class SubstepClient {
   ~SubstepClient() = default;
 };
 
-/// The pre-tick callback and the overlap filter of one world. Both call what they found installed.
+/// The pre-tick callback and the overlap filter of one world. Both also call the ones that were installed before.
 ///
-/// Bullet has one user pointer for all callbacks of a world, and it is the caller's. So hooks are found by
-/// their world, in a list of the process behind a mutex; worlds may be stepped by different threads.
+/// Bullet has one user pointer for all callbacks of a world, and it belongs to the caller. So a list of the process, behind a mutex, finds
+/// the hook of a world; different threads may step different worlds.
 class BulletHook {
  public:
   static void attach(btDiscreteDynamicsWorld& world, SubstepClient& client);
-  /// With the last client the world gets back what was installed before.
+  /// When the last client detaches, the world gets back the callbacks that were installed before.
   static void detach(btDiscreteDynamicsWorld& world, SubstepClient& client);
 
   /// The hook of a world, or null.
   static BulletHook* find(const btDynamicsWorld& world);
 
-  /// Adds to the time spent for this world. Bullet's profile has no such thing in a release build.
+  /// Adds to the time spent on this world's soft bodies. Bullet's profiler does not count it in a release build.
   void add_time(std::chrono::nanoseconds time) { spent_ += time; }
   std::chrono::nanoseconds spent() const { return spent_; }
 
   explicit BulletHook(btDiscreteDynamicsWorld& world);
 
  private:
-  /// No contacts between particles of the same soft body.
+  /// Prevents contacts between particles of the same soft body.
   struct Filter final : btOverlapFilterCallback {
     btOverlapFilterCallback* previous = nullptr;
     bool needBroadphaseCollision(btBroadphaseProxy* a, btBroadphaseProxy* b) const override;

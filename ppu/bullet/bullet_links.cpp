@@ -12,14 +12,14 @@ namespace {
 
 using Eigen::Vector3f;
 
-/// Joints to the world have a body that is in none.
+/// A joint to the world has a body that is in no world.
 bool is_in_world(const btCollisionObject& object) { return object.getWorldArrayIndex() >= 0; }
 
 std::uint32_t index_of(const btCollisionObject& object) {
   return static_cast<std::uint32_t>(object.getWorldArrayIndex());
 }
 
-/// What impulses move.
+/// Whether impulses move the object.
 bool is_dynamic(const btCollisionObject& object) {
   const btRigidBody* const body = btRigidBody::upcast(&object);
   return body != nullptr && !body->isStaticOrKinematicObject() && is_in_world(object);
@@ -36,7 +36,7 @@ RigidLinks BulletLinks::find(const btDiscreteDynamicsWorld& world, BulletObstacl
   rows_.clear();
   const auto moves = [](const btCollisionObject* object) { return is_dynamic(*object); };
   if (std::ranges::none_of(obstacles.objects(), moves)) return {};
-  // Bullet's world and dispatcher are not const where one only looks.
+  // Bullet's world and dispatcher are not const even for reading.
   auto& bullet = const_cast<btDiscreteDynamicsWorld&>(world);
   manifolds_.clear();
   for (int i = 0; i < bullet.getDispatcher()->getNumManifolds(); ++i) {
@@ -71,12 +71,12 @@ bool BulletLinks::is_reached(const btCollisionObject& object) {
   return is_in_world(object) && is_reached_[joined_.find(index_of(object))];
 }
 
-/// With all that is joined to it.
+/// Marks an object as reached, with all that is joined to it.
 void BulletLinks::reach(const btCollisionObject& object) {
   if (is_dynamic(object)) is_reached_[joined_.find(index_of(object))] = true;
 }
 
-/// Touches of all that is reached; what it touches is reached then. @return whether there is something new
+/// Adds the contacts of all that is reached and marks what it touches. @return whether there is something new
 bool BulletLinks::add_reached(BulletObstacles& obstacles,
                               const std::function<bool(const btCollisionObject&)>& is_attached) {
   const auto counts = [&](const btCollisionObject& object) {

@@ -1,5 +1,5 @@
 #pragma once
-// How rigid bodies near soft ones touch each other or are joined, as Bullet knows it.
+// Finds contacts and joints between rigid bodies near soft ones, as Bullet knows them.
 
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
 
@@ -12,12 +12,12 @@
 
 namespace softcell::ppu {
 
-/// Used by one thread. Allocates when there are more touches, joints or objects than ever before.
+/// Used by one thread. Allocates when there are more contacts, joints or objects than ever before.
 class BulletLinks {
  public:
-  /// Those of the rigid bodies in `obstacles` that move, of what these touch or are joined to, and so on for a few bodies: what they touch is
-  /// found in `obstacles`, too, from now on. By Bullet's contacts of its last step, and its joints, where bodies are now.
-  /// @param is_attached  whether soft bodies are attached to an object: its touches and joints are left out
+  /// Contacts and joints of the moving rigid bodies in `obstacles`, of the bodies that these touch or are joined to, and so on for a few
+  /// bodies; adds the bodies found to `obstacles`. Uses Bullet's contacts of its last step, and its joints at the bodies' present places.
+  /// @param is_attached  whether soft bodies are attached to an object: its contacts and joints are left out
   /// @param step  seconds
   /// @return  valid until the next call
   RigidLinks find(const btDiscreteDynamicsWorld& world, BulletObstacles& obstacles,
@@ -32,11 +32,11 @@ class BulletLinks {
 
   std::vector<RigidTouch> touches_;
   std::vector<JointRow> rows_;
-  std::vector<const btPersistentManifold*> manifolds_;  // not among touches_ yet
-  std::vector<const btPersistentManifold*> near_;       // of them: of what is reached
+  std::vector<const btPersistentManifold*> manifolds_;  // not in touches_ yet
+  std::vector<const btPersistentManifold*> near_;       // those of bodies that have been reached
   std::vector<btTypedConstraint*> joints_;
   DisjointSets joined_;           // objects of the world
-  std::vector<bool> is_reached_;  // of each set of these, by its name
+  std::vector<bool> is_reached_;  // for each of these sets
 };
 
 }  // namespace softcell::ppu

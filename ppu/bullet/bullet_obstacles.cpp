@@ -35,7 +35,7 @@ namespace {
 using Eigen::Matrix3f;
 using Eigen::Vector3f;
 
-constexpr int kRimPoints = 24;  // of the circles of cylinders and cones
+constexpr int kRimPoints = 24;  // on the circles of cylinders and cones
 constexpr std::uint32_t kNone = ~0u;
 
 /// Turns the y axis into Bullet's axis of a capsule, cylinder or cone.
@@ -65,7 +65,7 @@ void add_edges_of_box(const Vector3f& half, std::vector<ObstacleEdge>& edges) {
   }
 }
 
-/// The corners of a rim of radius 1, the last one again the first.
+/// The corners of a rim of radius 1; the first one comes again at the end.
 const std::array<Eigen::Vector2f, kRimPoints + 1>& unit_rim() {
   static const auto rim = [] {
     std::array<Eigen::Vector2f, kRimPoints + 1> corners;
@@ -93,7 +93,7 @@ void find_hull(const std::vector<btVector3>& points, std::vector<Eigen::Vector4f
   hull.compute(reinterpret_cast<const float*>(points.data()), sizeof(btVector3),
                static_cast<int>(points.size()), 0, 0);
   for (int f = 0; f < hull.faces.size(); ++f) {
-    // Newell's normal: a face of nearly collinear corners has one, too.
+    // Newell's normal: it exists even for a face of nearly collinear corners.
     Vector3f normal = Vector3f::Zero();
     float height = 0;
     int corners = 0;
@@ -128,10 +128,10 @@ void find_points(const btConvexShape& shape, std::vector<btVector3>& points) {
   points.assign(around.getVertexPointer(), around.getVertexPointer() + around.numVertices());
 }
 
-/// What counts as no length beside another one, and how thick that is made, in both directions.
+/// Up to this share of another length a length counts as none; and the thickness it gets instead, in both directions.
 constexpr float kNoLength = 1e-5f, kThickness = 1e-3f;
 
-/// The point that is farthest from `from` in the directions that `measured` leaves of a difference.
+/// The longest vector from `from` to a point after `measured` has projected it.
 template <class Measured>
 Vector3f farthest(const std::vector<btVector3>& points, const Vector3f& from, const Measured& measured) {
   Vector3f most = Vector3f::Zero();
@@ -142,8 +142,8 @@ Vector3f farthest(const std::vector<btVector3>& points, const Vector3f& from, co
   return most;
 }
 
-/// Points in one plane or on one line have no inside that something could be pushed out of: each becomes two or four, on both sides.
-/// Points that are all the same stay what they are.
+/// Points in one plane or on one line have no inside out of which something could be pushed: each is replaced by two or four, on both
+/// sides. Points that all coincide stay as they are.
 void give_volume(std::vector<btVector3>& points) {
   if (points.empty()) return;
   const Vector3f origin = to_eigen(points.front());
@@ -168,7 +168,7 @@ void give_volume(std::vector<btVector3>& points) {
   if (is_line || out.norm() < kNoLength * length) widen(z);
 }
 
-/// Half of a length of a shape, which gets some if it has none beside the longest half.
+/// Half of a shape's length; a thickness if it is tiny compared with the longest half.
 float with_thickness(float half, float longest) {
   return half < kNoLength * longest ? kThickness * longest : half;
 }
@@ -179,14 +179,14 @@ Vector3f extent_of(const btBoxShape& box) {
 
 bool is_under_way(const btCollisionObject& object) { return may_move(object) && object.isActive(); }
 
-/// What it would be without contacts: Bullet adds forces, gravity among them, later in its step.
+/// The velocity without contacts: Bullet adds forces, gravity among them, later in its step.
 Vector3f velocity_in(float step, const btRigidBody& body) {
   const Vector3f velocity = to_eigen(body.getLinearVelocity());
   if (body.isStaticOrKinematicObject()) return velocity;
   return velocity + step * body.getInvMass() * to_eigen(body.getTotalForce() * body.getLinearFactor());
 }
 
-/// As Bullet's own solver has it: the factors multiply what impulses do along the world's axes, and about them.
+/// As in Bullet's own solver, the factors multiply what impulses do along the world's axes, and about them.
 void set_mobility(const btRigidBody& body, ContactRigid& rigid) {
   const Vector3f linear = to_eigen(body.getLinearFactor()), angular = to_eigen(body.getAngularFactor());
   if (linear.isZero(0) && angular.isZero(0)) return;  // nothing moves it
@@ -199,10 +199,10 @@ void set_mobility(const btRigidBody& body, ContactRigid& rigid) {
                             .angular = rigid.inverse_inertia};
 }
 
-/// How far an object goes in a substep, metres.
+/// An object's motion in a substep, metres.
 struct Way {
   Vector3f along = Vector3f::Zero();
-  float turn = 0;  ///< no point of it goes farther by its spin
+  float turn = 0;  ///< how far its spin moves any point at most
 };
 
 Way way_of(const btCollisionObject& object, float step) {
@@ -215,16 +215,16 @@ Way way_of(const btCollisionObject& object, float step) {
           step * body->getAngularVelocity().length() * (centre.length() + radius)};
 }
 
-/// Around a box on that way.
+/// The box around a box with that motion.
 Bounds<3> ahead(const Bounds<3>& box, const Way& way) {
   return {box.low + way.along.cwiseMin(0.0f) - Vector3f::Constant(way.turn),
           box.high + way.along.cwiseMax(0.0f) + Vector3f::Constant(way.turn)};
 }
 
-/// Around all that comes into a box on that way.
+/// The box around everything that enters a box with that motion.
 Bounds<3> behind(const Bounds<3>& box, const Way& way) { return ahead(box, {-way.along, way.turn}); }
 
-/// Collects what the broad phase finds.
+/// Collects the objects that the broad phase finds.
 struct Collector final : btBroadphaseAabbCallback {
   Collector(int its_group, int its_mask, std::vector<const btBroadphaseProxy*>& list)
       : group(its_group), mask(its_mask), found(list) {}
@@ -237,7 +237,7 @@ struct Collector final : btBroadphaseAabbCallback {
   }
 };
 
-/// An empty list, which keeps what it has room for from one substep to the next.
+/// The next list, emptied: it keeps its allocated room from one substep to the next.
 template <typename T>
 std::vector<T>& next_list(std::vector<std::vector<T>>& lists, std::size_t& used) {
   if (used == lists.size()) lists.emplace_back();
@@ -282,16 +282,16 @@ void BulletObstacles::add_near(const Bounds<3>& box, int group, int mask,
   SC_ASSERT(world_ != nullptr, "obstacles for groups {} are looked for before begin()", mask);
   found_.clear();
   Collector near(group, mask, found_);
-  // Broad phases are not const where they only look.
+  // Broad phases are not const even for reading.
   const_cast<btBroadphaseInterface*>(world_->getBroadphase())
       ->aabbTest(to_bullet(box.low), to_bullet(box.high), near);
-  // Of other boxes the tree may find some.
+  // The tree may also find objects whose boxes do not overlap.
   std::erase_if(found_, [&](const btBroadphaseProxy* proxy) {
     return !overlap({to_eigen(proxy->m_aabbMin), to_eigen(proxy->m_aabbMax)}, box);
   });
   for (const Leaving& leaving : leaving_)
     if (overlap(leaving.box, box)) near.process(leaving.proxy);
-  // In the order in which objects were added, whatever tree they are in.
+  // Sorts by the order in which objects were added, so that the result does not depend on trees.
   std::sort(found_.begin(), found_.end(),
             [](const auto* a, const auto* b) { return a->m_uniqueId < b->m_uniqueId; });
   found_.erase(std::unique(found_.begin(), found_.end()), found_.end());
@@ -307,7 +307,7 @@ void BulletObstacles::add_object(btCollisionObject& object, const Bounds<3>& box
   const std::uint32_t rigid = rigid_of(object);
   if (obstacle_of_[rigid] != kNone) return indices.push_back(obstacle_of_[rigid]);
   const btCollisionShape& shape = *object.getCollisionShape();
-  // Of triangles there are others in every box.
+  // The triangles of a shape differ from box to box.
   if (!shape.isConcave() && !shape.isCompound())
     obstacle_of_[rigid] = static_cast<std::uint32_t>(obstacles_.size());
   add_shape(shape, object.getWorldTransform(), rigid, 0, box, indices);
@@ -436,7 +436,7 @@ void BulletObstacles::add_shape(const btCollisionShape& shape, const btTransform
         throw std::runtime_error(std::string("soft bodies cannot touch a shape of the kind ") +
                                  shape.getName() + "; it is neither convex nor made of triangles");
       const Hull& hull = hull_of(static_cast<const btConvexShape&>(shape));
-      if (hull.planes.empty()) return;  // of no points, or of one: it has no size
+      if (hull.planes.empty()) return;  // of no points, or of coinciding ones: it has no size
       obstacle.kind = ObstacleKind::kHull;
       obstacle.planes = hull.planes;
       obstacle.edges = hull.edges;
@@ -449,7 +449,7 @@ void BulletObstacles::add_shape(const btCollisionShape& shape, const btTransform
 void BulletObstacles::add_triangles(const btCollisionShape& shape, Obstacle obstacle, const Bounds<3>& box,
                                     std::vector<std::uint32_t>& indices) {
   std::vector<Triangle>& triangles = more_triangles();
-  // The box in the shape's frame.
+  // The box, in the shape's frame.
   const Matrix3f turn = obstacle.rotation.transpose();
   const Vector3f centre = turn * (0.5f * (box.low + box.high) - obstacle.position);
   const Vector3f half = turn.cwiseAbs() * (0.5f * (box.high - box.low));
@@ -460,7 +460,7 @@ void BulletObstacles::add_triangles(const btCollisionShape& shape, Obstacle obst
   push(obstacle, indices);
 }
 
-/// Made anew when the shape has other points than the one that was there before.
+/// Made anew when the shape's points have changed.
 const BulletObstacles::Hull& BulletObstacles::hull_of(const btConvexShape& shape) {
   find_points(shape, points_);
   Hull& hull = hulls_[&shape];

@@ -1,5 +1,5 @@
 #pragma once
-// What is rigid near soft bodies, as plain data.
+// Converts the rigid bodies near soft ones from Bullet to plain data.
 
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
 
@@ -14,27 +14,26 @@
 
 namespace softcell::ppu {
 
-/// The rigid bodies of a world that are near some boxes. Used by one thread. Allocates when there are more of
-/// them than ever before.
+/// The rigid bodies of a world that are near some boxes. Used by one thread. Allocates when there are more of them than ever before.
 ///
-/// Knows planes, spheres, boxes, capsules, cylinders, cones, convex hulls, compounds, triangle meshes and
-/// height fields. Another convex shape becomes the hull of what its support function says in 42 directions.
+/// Knows planes, spheres, boxes, capsules, cylinders, cones, convex hulls, compounds, triangle meshes and height fields. Any other convex
+/// shape is replaced by the hull of its support points in 42 directions.
 class BulletObstacles {
  public:
-  /// Which objects of the world.
+  /// Which objects of the world are taken.
   enum class Objects {
     kSolid,    ///< those that keep others out
-    kTriggers  ///< trigger volumes: objects that Bullet knows as without contact response
+    kTriggers  ///< trigger volumes: objects without contact response in Bullet
   };
   explicit BulletObstacles(Objects objects) : role_(objects) {}
 
-  /// Forgets what was near before. The broad phase knows where objects have been: of those that go on it learns later in Bullet's step. So
-  /// this looks for the ones that leave the boxes that it has for them.
+  /// Forgets what was near before. The broad phase still has the boxes of the step before, as Bullet updates them later in its step. So
+  /// this looks for moving objects that leave their boxes.
   void begin(const btDiscreteDynamicsWorld& world, float step);
 
-  /// Appends the indices of all obstacles that are in a box, or come there in the substep.
-  /// @param group, mask  Bullet's collision filter of what is in the box
-  /// @throws std::runtime_error  a shape that is neither convex nor made of triangles; the sentence names it.
+  /// Appends the indices of all obstacles that are in a box, or enter it in the substep.
+  /// @param group, mask  Bullet's collision filter of the soft body in the box
+  /// @throws std::runtime_error  a shape that is neither convex nor made of triangles; the message names it.
   void add_near(const Bounds<3>& box, int group, int mask, std::vector<std::uint32_t>& indices);
 
   /// The index of an object's rigid body, near or not. @pre begin() was called
@@ -42,25 +41,25 @@ class BulletObstacles {
 
   std::span<const Obstacle> obstacles() const { return obstacles_; }
   std::span<ContactRigid> rigids() { return rigids_; }
-  /// Whose rigids() these are. A collision object that is no rigid body never moves.
+  /// The objects that rigids() stand for. A collision object that is not a rigid body never moves.
   std::span<btCollisionObject* const> objects() const { return objects_; }
 
-  /// Gives rigid bodies the velocities that contacts have given their ContactRigid.
-  /// @param at_rest  of each: what touches it is at rest, so that Bullet may let it fall asleep, and its sleep goes on
+  /// Sets the velocities of rigid bodies to those that contacts have given their ContactRigid.
+  /// @param at_rest  for each: what touches it is at rest, so Bullet may let it fall asleep, or sleep on
   void apply(const std::vector<bool>& at_rest);
 
  private:
   /// Faces and edges of a convex hull.
   struct Hull {
-    std::vector<btVector3> points;  // that it was made of
+    std::vector<btVector3> points;  // of which the hull was made
     std::vector<Eigen::Vector4f> planes;
     std::vector<ObstacleEdge> edges;
   };
   using Triangle = std::array<Eigen::Vector3f, 3>;
-  /// An object whose way in the substep leads out of the box that the broad phase has.
+  /// An object that leaves its box in the broad phase during the substep.
   struct Leaving {
     const btBroadphaseProxy* proxy;
-    Bounds<3> box;  ///< around its way
+    Bounds<3> box;  ///< around its motion
   };
 
   void find_leaving(const btCollisionObject& object);
@@ -84,7 +83,7 @@ class BulletObstacles {
   std::vector<std::uint32_t> rigid_of_;     // of each object of the world; kNone: not known yet
   std::vector<std::uint32_t> obstacle_of_;  // of each object without triangles; kNone: not known yet
   std::map<const btCollisionShape*, Hull> hulls_;
-  // Lists of obstacles of this substep, and behind them those that lists of others may use again.
+  // The first lists are in use in this substep; the others are kept for reuse.
   std::vector<std::vector<ObstacleEdge>> edges_;
   std::vector<std::vector<Triangle>> triangles_;
   std::size_t edges_used_ = 0, triangles_used_ = 0;

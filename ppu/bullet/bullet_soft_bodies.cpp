@@ -30,7 +30,7 @@
 namespace softcell::ppu {
 namespace {
 
-/// Adds the processor time of a piece of work.
+/// Adds the processor time of the work to `time`.
 template <typename Work>
 void timed(std::chrono::nanoseconds& time, const Work& work) {
   const auto begin = processor_time();
@@ -51,7 +51,7 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
     world.addAction(this);
   }
   ~Impl() override {
-    workshop.reset();  // it works with what follows
+    workshop.reset();  // its threads use the members that follow
     solve.clear();
     bodies.clear();
     world.removeAction(this);
@@ -97,7 +97,7 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
   }
   void debugDraw(btIDebugDraw*) override {}
 
-  /// Null: it touches in another way.
+  /// Null: the body does not touch with its surface.
   SurfaceBody* with_surface(const CoupledBody& body) const {
     const auto found = std::find(with_surfaces.begin(), with_surfaces.end(), &body);
     return found == with_surfaces.end() ? nullptr : *found;
@@ -108,7 +108,7 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
   void follow_model(SurfaceBody& body) {
     if (is_of_other_model(body)) body.set_contact(surfaces->contact_model(body.soft().shared_model()));
   }
-  /// An assignment may have made it a body of another model: its attachments have particles that it does not have.
+  /// An assignment may have given the body another model. Its attachments refer to particles that it does not have, so they are removed.
   void take_other_model(SurfaceBody& body) {
     if (is_of_other_model(body)) attachments().forget(body);
     follow_model(body);
@@ -122,14 +122,14 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
     for (Break& one : breaks.take_due()) put_pieces(*one.body, one.pieces.get(), one.faces);
   }
 
-  /// Null: pieces of the body have no contact model that is made ahead.
+  /// Null: contact models of the body's pieces are not made ahead.
   const ContactModel* contact_of_whole(const CoupledBody& body) {
     const std::shared_ptr<const SoftBodyModel<3>>& model = body.soft().shared_model();
     if (!surfaces || !body.can_be_touched() || model->mesh().triangles.empty()) return nullptr;
     return &surfaces->contact_model(model->is_piece() ? model->whole() : model);
   }
 
-  /// @param substeps  to come, until there are pieces
+  /// @param substeps  from now until the pieces appear
   void begin_break(CoupledBody& body, std::span<const std::uint32_t> faces, int substeps) {
     const std::shared_ptr<const SoftBodyModel<3>>& model = body.soft().shared_model();
     if (substeps == 0) {
@@ -143,7 +143,7 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
                  }));
   }
 
-  /// Of any thread.
+  /// May run on any thread.
   PreparedPieces make_pieces(const std::shared_ptr<const SoftBodyModel<3>>& model,
                              std::span<const std::uint32_t> faces, std::uint32_t least_cells,
                              const ContactModel* whole) {
@@ -151,7 +151,7 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
                           [this](const auto& of_piece) { solve.prepare(of_piece); });
   }
 
-  /// @return what stays beside the body itself
+  /// @return the pieces that stay, except for the body itself
   std::vector<SoftBody<3>*> break_body(CoupledBody& body, std::span<const std::uint32_t> faces) {
     return put_pieces(
         body,
@@ -159,7 +159,8 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
         faces.size());
   }
 
-  /// @param whole  as it was, when the first piece has become its body, but still has its contact model
+  /// Lets pieces know the walls near the whole. The first piece has replaced the whole, but still has its contact model.
+  /// @param whole  the whole's last state
   static void follow_sides(const SoftBody<3>& whole, std::span<const SurfaceAttachments::Piece> pieces) {
     const SurfaceBody& first = *pieces.front().body;
     const KnownSides sides = first.sides();
@@ -168,7 +169,7 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
                                            piece.body->soft().model().lattice(), piece.particle_of));
   }
 
-  /// @param faces  that broke   @return what stays beside the body itself
+  /// @param faces  that broke   @return the pieces that stay, except for the body itself
   std::vector<SoftBody<3>*> put_pieces(CoupledBody& body, PreparedPieces made, std::size_t faces) {
     std::vector<PreparedPiece>& prepared = made.stay;
     std::vector<SoftBody<3>*> others;
@@ -185,7 +186,7 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
     const Eigen::Vector3d centre = body.soft().precise_centre_of_mass();
     for (auto& [piece, contact] : prepared) {
       piece.body.inherit_state(body.soft(), piece.particle_of, centre);
-      // Of a body that was teleported or put back into shape nothing is known.
+      // After a teleport or a reset of the shape nothing is known of the body's rotations.
       if (!body.was_reset()) solve.inherit_state(body.soft(), piece.body, piece.particle_of);
     }
     append(body, std::move(prepared.front().piece.particle_of));
@@ -225,7 +226,7 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
     return bodies.back()->soft();
   }
 
-  /// @throws std::invalid_argument  it is not one of `bodies`
+  /// @throws std::invalid_argument  the body is not one of `bodies`
   auto find(const SoftBody<3>& body, const char* purpose) {
     const auto found = std::find_if(bodies.begin(), bodies.end(),
                                     [&](const auto& coupled) { return &coupled->soft() == &body; });
@@ -234,8 +235,8 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
     return found;
   }
 
-  /// Not breaking any more.
-  /// @throws std::invalid_argument  as find(); it touches with spheres
+  /// The body, after its running break has ended.
+  /// @throws std::invalid_argument  as find(); the body touches with spheres
   CoupledBody& find_breakable(const SoftBody<3>& body) {
     CoupledBody& coupled = **find(body, "to be cut");
     if (!coupled.can_break())
@@ -247,7 +248,7 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
     return coupled;
   }
 
-  /// @throws std::invalid_argument  as find(); it does not touch with its surface
+  /// @throws std::invalid_argument  as find(); the body does not touch with its surface
   SurfaceBody& find_attachable(const SoftBody<3>& body) {
     if (SurfaceBody* const surface = with_surface(**find(body, "to be attached"))) {
       take_other_model(*surface);
@@ -263,7 +264,7 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
     return surfaces->attachments();
   }
 
-  /// Nobody may sleep on a body that goes, or may go, from where Bullet knows it.
+  /// Wakes bodies that may sleep on a body which leaves its place, or may leave it.
   void tell_others(const CoupledBody& leaving) {
     if (!leaving.can_be_touched()) return;
     const Bounds<3> box = leaving.box();
@@ -278,13 +279,13 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
   btDiscreteDynamicsWorld& world;
   std::vector<std::unique_ptr<CoupledBody>> bodies;
   std::optional<SurfaceContacts>
-      surfaces;  // of bodies that touch with their surfaces: all that touch, or none
+      surfaces;  // of bodies that touch with their surfaces: either all that touch, or none
   std::vector<SurfaceBody*> with_surfaces;  // of `bodies`
   std::uint32_t next_number = 0;
   StepAhead<3> solve;                  // of `bodies`
   BreaksOfBodies breaks;               // of `bodies`
-  std::optional<Workshop> workshop;    // until the end of what it works with
-  std::vector<BrokenSoftBody> broken;  // since they were asked for
+  std::optional<Workshop> workshop;    // until its work has ended
+  std::vector<BrokenSoftBody> broken;  // since the last call that returned them
   std::optional<SleepSettings> sleep;
   SoftBodyTimes times;
 };

@@ -1,5 +1,5 @@
 #pragma once
-// Between Bullet's vectors and matrices and Eigen's.
+// Converts Bullet's vectors and matrices to Eigen's and back.
 
 #include <LinearMath/btMatrix3x3.h>
 #include <LinearMath/btVector3.h>

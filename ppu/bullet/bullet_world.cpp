@@ -21,10 +21,11 @@ struct RigidBody {
   std::unique_ptr<btCollisionShape> shape;
   std::unique_ptr<btRigidBody> body;
   btTransform start;
-  // From the frame of its caller's shapes to Bullet's, which has the centre of mass in its origin and the principal axes.
+  // From the frame in which the caller gives shapes to Bullet's, with its origin in the centre of mass and its axes along the principal
+  // ones.
   btTransform inner = btTransform::getIdentity();
   bool is_moved = false;  // by move_to()
-  btTransform end;        // of such a one: where it is at the next substep's end
+  btTransform end;        // for a moved one: its place at the next substep's end
 };
 
 struct Motor {
@@ -32,7 +33,7 @@ struct Motor {
   float torque = 0;  // N m
 };
 
-/// A transform is exact where nothing is turned.
+/// The transform is exact if the rotation is the identity.
 btTransform transform_of(const Eigen::Vector3f& position, const Eigen::Quaternionf& rotation) {
   btTransform transform(btQuaternion(rotation.x(), rotation.y(), rotation.z(), rotation.w()),
                         to_bullet(position));
@@ -54,9 +55,8 @@ double milliseconds(std::chrono::nanoseconds time) {
 struct BulletWorld::Impl {
   btDefaultCollisionConfiguration configuration;
   btCollisionDispatcher dispatcher{&configuration};
-  // The fastest of those that Bullet has, measured on the demo's arena: 5 soft bodies of 1455 colliding
-  // particles, 6 boxes, 9 static shapes, gravity turning. Milliseconds of CPU time per frame of two substeps,
-  // of which 0.9 are shape matching:
+  // The fastest of Bullet's broad phases, measured on the demo's arena: 5 soft bodies of 1455 colliding particles, 6 boxes, 9 static
+  // shapes, gravity turning. Milliseconds of CPU time per frame of two substeps, of which 0.9 are shape matching:
   //
   //     btDbvtBroadphase                    2.9     with deferred collide    4.1
   //     btAxisSweep3 (100 m of world)       3.1     bt32BitAxisSweep3        3.5
@@ -97,7 +97,7 @@ struct BulletWorld::Impl {
     return bodies.size() - 1;
   }
 
-  /// Bullet takes the velocity of what the program moves from where it was and where it is: these are put so that it is the substep's.
+  /// Bullet computes the velocity of a moved body from its last and its present place: these are set so that it is the substep's.
   void begin_moves() {
     for (RigidBody& rigid : bodies) {
       if (!rigid.is_moved) continue;
@@ -129,7 +129,7 @@ struct BulletWorld::Impl {
 BulletWorld::BulletWorld() : impl_(std::make_unique<Impl>()) {
   btContactSolverInfo& solver = impl_->world.getSolverInfo();
   solver.m_solverMode = SOLVER_USE_WARMSTARTING;  // in order, and without code chosen by the processor
-  // Penetration is undone by moving bodies apart, never by a velocity: that would throw soft bodies upwards.
+  // Penetration is corrected by moving bodies apart, never by a velocity: that would throw soft bodies upwards.
   solver.m_splitImpulse = 1;
   solver.m_splitImpulsePenetrationThreshold = 0;
   set_gravity({0, -9.81f, 0});
@@ -185,7 +185,7 @@ std::size_t BulletWorld::add_body(std::span<const RigidShape> shapes, const Rigi
   RigidBody& rigid = impl_->bodies[body];
   rigid.parts = std::move(parts);
   rigid.inner = inner;
-  if (mass > 0) {  // Bullet's own is that of a box around it
+  if (mass > 0) {  // Bullet's own inertia is that of a box around it
     rigid.body->setMassProps(mass, inertia);
     rigid.body->updateInertiaTensor();
   }
@@ -223,7 +223,7 @@ void BulletWorld::add_hinge(const Hinge& hinge) {
   const auto direction = [&](const btRigidBody& body) {
     return body.getWorldTransform().getBasis().transpose() * to_bullet(hinge.axis);
   };
-  // Bullet's motor turns its first body against its second one.
+  // Bullet's motor rotates its first body against its second one.
   auto joint = std::make_unique<btHingeConstraint>(b, a, place(b), place(a), direction(b), direction(a));
   impl_->world.addConstraint(joint.get(), true);
   if (hinge.torque > 0) {
@@ -238,7 +238,7 @@ std::size_t BulletWorld::add_convex(const TriangleMesh& mesh, const Eigen::Vecto
   if (mesh.positions.empty()) throw std::invalid_argument("a convex obstacle needs a mesh with positions");
   auto hull = std::make_unique<btConvexHullShape>();
   for (const Eigen::Vector3f& p : mesh.positions) hull->addPoint(to_bullet(p), false);
-  hull->optimizeConvexHull();  // drops what lies inside: GJK looks at every point
+  hull->optimizeConvexHull();  // drops inner points: GJK looks at every point
   hull->recalcLocalAabb();
   return impl_->add(std::move(hull), 0, btTransform(btMatrix3x3::getIdentity(), to_bullet(position)),
                     friction, restitution);
@@ -273,7 +273,7 @@ void BulletWorld::put(std::size_t body, const Motion& motion) {
 Eigen::Matrix4f BulletWorld::pose(std::size_t body) const {
   const RigidBody& rigid = impl_->bodies.at(body);
   const btTransform& own = rigid.body->getWorldTransform();
-  Eigen::Matrix4f pose;  // by columns, like Bullet's
+  Eigen::Matrix4f pose;  // in column order, like Bullet's
   if (rigid.parts.empty())
     own.getOpenGLMatrix(pose.data());
   else
@@ -333,7 +333,7 @@ StepTimes BulletWorld::step(float seconds, int substeps) {
   const auto begin = std::chrono::steady_clock::now();
   const auto soft_begin = BulletSoftBodies::time_spent(impl_->world);
   const float substep = seconds / static_cast<float>(substeps);
-  // One call for each: with maxSubSteps = 0 Bullet takes the step as it is, and keeps no remainder.
+  // One call per substep: with maxSubSteps = 0 Bullet takes the step as it is, and keeps no remainder.
   for (const Motor& motor : impl_->motors) motor.hinge->setMaxMotorImpulse(motor.torque * substep);
   for (int i = 0; i < substeps; ++i) {
     impl_->begin_moves();

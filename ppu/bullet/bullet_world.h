@@ -1,5 +1,5 @@
 #pragma once
-// A Bullet world with settings that give the same result in every run, and the rigid things in it.
+// A Bullet world with settings that give the same result in every run, and its rigid bodies.
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -26,9 +26,9 @@ struct StepTimes {
 /// Owns the world and its rigid bodies. Metres, kilograms, seconds; y is up; gravity is 9.81 m/s^2 downwards
 /// until set. Rigid bodies are numbered from 0 in the order they are added. Used by one thread.
 ///
-/// Substeps have a fixed length, nothing is taken in random order, and nothing sleeps: the result depends on
-/// the calls made, not on the clock. Bullet turns rigid bodies with the C library's sine and cosine, so
-/// another C library may give other last bits as soon as a rigid body rotates.
+/// Substeps have a fixed length, nothing is processed in random order, and nothing sleeps: the result depends on the calls made, not on the
+/// clock. Bullet computes rotations with the C library's sine and cosine, so with another C library the last bits may differ as soon as a
+/// rigid body rotates.
 class BulletWorld {
  public:
   BulletWorld();
@@ -36,41 +36,41 @@ class BulletWorld {
   BulletWorld(const BulletWorld&) = delete;
   BulletWorld& operator=(const BulletWorld&) = delete;
 
-  /// @param size  edge lengths, positive    @param mass  kg; 0 for one that never moves
+  /// @param size  edge lengths, positive    @param mass  kg; 0 for a box that never moves
   /// @param position  of its centre         @param friction  coefficient, multiplied with the other body's
   /// @param restitution  0..1, multiplied with the other body's
   /// @param rotation  of unit length
-  /// @throws std::invalid_argument  not as stated.
+  /// @throws std::invalid_argument  an argument is not as stated.
   std::size_t add_box(const Eigen::Vector3f& size, float mass, const Eigen::Vector3f& position,
                       float friction, float restitution = 0,
                       const Eigen::Quaternionf& rotation = Eigen::Quaternionf::Identity());
 
-  /// The convex hull of a mesh, which never moves. Its mesh's origin lies at `position`.
+  /// Adds the convex hull of a mesh, which never moves. The mesh's origin lies at `position`.
   /// @throws std::invalid_argument  the mesh has no positions.
   std::size_t add_convex(const TriangleMesh& mesh, const Eigen::Vector3f& position, float friction,
                          float restitution = 0);
 
-  /// A body of one or several shapes of the same density, which may overlap.
+  /// Adds a body of one or several shapes of the same density, which may overlap.
   /// @throws std::invalid_argument  as add_box() and make_bullet_shape(); no shapes, or both a mass and is_moved.
   std::size_t add_body(std::span<const RigidShape> shapes, const RigidBodySettings& settings);
 
-  /// Has a body that is moved be there at the end of the next substep. It moves evenly and carries along what it touches; nothing stops it.
+  /// Moves a body, evenly, so that it arrives at the end of the next substep. It carries along what it touches; nothing stops it.
   /// @param rotation  of unit length  @pre it was added with is_moved; all numbers are finite
   void move_to(std::size_t body, const Eigen::Vector3f& position, const Eigen::Quaternionf& rotation);
-  /// Has it be there now, without a way that it moved. @pre as above
+  /// Places it there now, without a motion. @pre as above
   void put(std::size_t body, const Eigen::Vector3f& position, const Eigen::Quaternionf& rotation);
 
-  /// Two bodies that turn against each other about an axis only, and do not touch each other.
+  /// Joins two bodies so that they only rotate against each other about an axis. They do not collide with each other.
   struct Hinge {
     std::size_t a = 0, b = 0;
     Eigen::Vector3f point{0, 0, 0}, axis{1, 0, 0};  ///< in the world, now; the axis of unit length
-    float speed = 0;                                ///< rad/s, of b against a: what a motor wants
-    float torque = 0;                               ///< N m, at most; 0: there is no motor
+    float speed = 0;                                ///< rad/s, of b against a: the motor's target
+    float torque = 0;                               ///< N m, at most; 0: no motor
   };
   /// @pre the two differ, and one of them has a mass; torque 0 or above
   void add_hinge(const Hinge& hinge);
 
-  /// Puts all rigid bodies back to where they were added, at rest, and forgets contacts.
+  /// Puts all rigid bodies back to the places where they were added, at rest, and forgets contacts.
   void reset();
 
   Eigen::Matrix4f pose(std::size_t body) const;  ///< from the body's frame to the world's
@@ -81,9 +81,9 @@ class BulletWorld {
     Eigen::Quaternionf rotation = Eigen::Quaternionf::Identity();
     Eigen::Vector3f velocity{0, 0, 0}, angular_velocity{0, 0, 0};
   };
-  bool moves(std::size_t body) const;  ///< has a mass above 0
+  bool moves(std::size_t body) const;  ///< whether its mass is above 0
   Motion motion(std::size_t body) const;
-  /// Puts a body elsewhere, moving as stated. Its contacts are found anew. @pre moves(body); of unit length
+  /// Puts a body elsewhere, with the given velocities. Its contacts are found anew. @pre moves(body); the rotation has unit length
   void put(std::size_t body, const Motion& motion);
 
   btRigidBody& rigid_body(std::size_t body);  ///< for what is not offered here
@@ -93,26 +93,26 @@ class BulletWorld {
 
   /// Simulates `seconds` in `substeps` equal steps.
   /// @throws std::invalid_argument  seconds not positive, or no substeps.
-  /// @throws std::runtime_error     a soft body has become NaN.
+  /// @throws std::runtime_error     a soft body is not finite.
   StepTimes step(float seconds, int substeps);
 
-  /// Replaces what is in `contacts` by those of the last substep, soft bodies' particles included. Touching
-  /// without pressing does not count.
+  /// Replaces the content of `contacts` by the contacts of the last substep, soft bodies' particles included. Contacts without an impulse
+  /// are left out.
   void contacts(std::vector<Contact>& contacts) const;
 
-  /// A rigid body on a ray.
+  /// The point where a ray enters a rigid body.
   struct RayHit {
     std::size_t body = 0;
-    float share = 0;                    ///< 0..1, of the way
+    float share = 0;                    ///< 0..1, fraction of the ray
     Eigen::Vector3f position{0, 0, 0};  ///< metres
   };
-  /// Where a ray enters the rigid bodies on its way, the nearest first. @pre from and to are finite, metres, and differ
+  /// The rigid bodies that a ray enters, the nearest first. @pre from and to are finite, metres, and differ
   std::vector<RayHit> cast_ray(const Eigen::Vector3f& from, const Eigen::Vector3f& to) const;
 
-  /// Whether a box with edges along the axes, metres, meets no rigid body and no sphere of a soft one. @pre low < high, finite
+  /// Whether a box along the axes, metres, overlaps no rigid body and no sphere of a soft one. @pre low < high, finite
   bool is_free(const Eigen::Vector3f& low, const Eigen::Vector3f& high) const;
 
-  /// For BulletSoftBodies, and for whatever is not offered here.
+  /// For BulletSoftBodies, and for everything that is not offered here.
   btDiscreteDynamicsWorld& world();
   const btDiscreteDynamicsWorld& world() const;
 

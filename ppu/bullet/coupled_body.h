@@ -1,6 +1,6 @@
 #pragma once
-// One soft body in a Bullet world, whatever it touches with: spheres (sphere_body.h), its drawn surface
-// (surface_body.h) or nothing (free_body.h).
+// One soft body in a Bullet world, with any kind of contacts: spheres (sphere_body.h), its drawn surface (surface_body.h) or none
+// (free_body.h).
 
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
 
@@ -26,7 +26,7 @@ class CoupledBody {
   SoftBody<3>& soft() { return soft_; }
   const SoftBody<3>& soft() const { return soft_; }
 
-  /// The largest piece of it takes its place, with the rotations that are known. @return what it was
+  /// Replaces the body by its largest piece and keeps the known rotations. @return the body as it was
   SoftBody<3> become(SoftBody<3> piece) {
     const bool reset = was_reset();
     soft_ = std::move(piece);
@@ -37,34 +37,35 @@ class CoupledBody {
   /// Whether the body's user has changed it since the last substep.
   bool was_changed() const { return soft_.revision() != seen_revision_; }
 
-  /// Whether what is known of its rotations is of no use since then.
+  /// Whether the body's user has reset it since then, so that its known rotations are useless.
   bool was_reset() const { return soft_.resets() != seen_resets_; }
 
-  /// Before the solver: what the caller may have done to the body or, mostly to velocities, its particles.
+  /// Called before the solver: takes what the caller may have done to the body or, mostly to velocities, its particles.
   virtual void begin_substep() = 0;
 
-  /// Whether particles are no longer as the solver knows them, though the body was not changed.
+  /// Whether particles differ from what the solver knows although the body was not changed.
   virtual bool was_pushed() const = 0;
 
-  /// Behind the solver: whoever moves the particles gets the new velocities.
+  /// Called after the solver: passes the new velocities to whoever moves the particles.
   virtual void apply(float step) = 0;
 
-  /// After Bullet has integrated.
+  /// Called after Bullet has integrated.
   virtual void end_substep(float step, const std::optional<SleepSettings>& sleep) = 0;
 
-  /// Whether it was too fast to fall asleep at the end of the last substep. One that was woken moves when it has begun to.
+  /// Whether it was too fast to fall asleep at the end of the last substep. A body that was woken counts as moving once it has begun to
+  /// move.
   bool moves() const { return stillness_.moves(); }
 
   virtual bool can_be_touched() const = 0;
 
-  /// Whether it may become another body, with other particles.
+  /// Whether it may break, and so become another body with other particles.
   virtual bool can_break() const = 0;
 
-  /// The box around what can be touched. @pre can_be_touched()
+  /// The box around all that can be touched. @pre can_be_touched()
   virtual Bounds<3> box() const = 0;
-  /// Where it has slept, if it does or did until the program moved it.
+  /// The box in which the body sleeps, or has slept until the program moved it.
   virtual std::optional<Bounds<3>> box_asleep() const { return std::nullopt; }
-  virtual float reach() const = 0;  ///< metres, beyond that box, at which other soft bodies touch it
+  virtual float reach() const = 0;  ///< metres: other soft bodies touch it up to so far outside of that box
 
   const CollisionFilter& filter() const { return filter_; }
   virtual void set_filter(const CollisionFilter& filter) {
@@ -72,17 +73,17 @@ class CoupledBody {
     rouse();
   }
 
-  /// Wakes the body if it sleeps and may have lain on another, which was in `gone` and is there no longer.
+  /// Wakes the body if it sleeps and may have rested on another body, which was in the box `gone` and has left.
   void lose(const CoupledBody& other, const Bounds<3>& gone) {
     if (!soft_.asleep() || !can_be_touched()) return;
-    constexpr float kGive = 1.2f;  // bodies that rest on each other are not quite as far apart as they touch
+    constexpr float kGive = 1.2f;  // resting bodies are slightly farther apart than they touch
     const Bounds<3> own = box();
     const Eigen::Vector3f reaches = Eigen::Vector3f::Constant(kGive * (reach() + other.reach()));
     if ((own.low - reaches - gone.high).maxCoeff() < 0 && (gone.low - own.high - reaches).maxCoeff() < 0)
       rouse();
   }
 
-  /// Wakes the body. It sleeps again when it has been still for as long as others.
+  /// Wakes the body. It falls asleep again after it has been still for as long as others must be.
   void rouse() {
     stillness_.begin();
     wake();
@@ -90,7 +91,7 @@ class CoupledBody {
 
  protected:
   virtual void wake() { soft_.set_asleep(false); }
-  virtual void fall_asleep() = 0;  ///< at rest, in this gravity
+  virtual void fall_asleep() = 0;  ///< at rest, under the present gravity
 
   void see_changes() {
     seen_revision_ = soft_.revision();

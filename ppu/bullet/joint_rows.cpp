@@ -12,35 +12,36 @@
 namespace softcell::ppu {
 namespace {
 
-// btGeneric6DofSpring2Constraint has most: of each of six axes two limits, a motor and a spring.
+// btGeneric6DofSpring2Constraint has the most: two limits, a motor and a spring for each of six axes.
 constexpr std::size_t kMostRows = 24;
 
-/// What joints write into, numbers of one row behind those of another.
+/// A row as joints fill it in: all numbers of one row lie together, one row after the other.
 struct BulletRow {
   btVector3 linear_a{0, 0, 0}, angular_a{0, 0, 0}, linear_b{0, 0, 0}, angular_b{0, 0, 0};
   btScalar target = 0, softness = 0, least = -SIMD_INFINITY, most = SIMD_INFINITY;
 };
 static_assert(sizeof(BulletRow) % sizeof(btScalar) == 0);
 
-/// Bullet's largest number, where it means none.
+/// Translates Bullet's largest number, which means no limit.
 float limit_of(btScalar limit) {
   if (limit >= SIMD_INFINITY) return JointRow::kNoLimit;
   return limit <= -SIMD_INFINITY ? -JointRow::kNoLimit : limit;
 }
 
-/// Where a motor or errors of positions want it. What has not come to a limit yet may go there, and what is beyond stays there.
+/// The speed at which a motor or the correction of position errors aims. A row within its limit may move up to it; a row beyond its limit
+/// stays there, and its error is not corrected.
 float target_of(const BulletRow& row) {
   const bool is_limited_below = row.least > -SIMD_INFINITY, is_limited_above = row.most < SIMD_INFINITY;
   if (is_limited_below == is_limited_above) return row.target;
   return is_limited_below ? std::min(row.target, 0.0f) : std::max(row.target, 0.0f);
 }
 
-/// How much an impulse changes of a row's speed, as Bullet sees it.
+/// The change of a row's speed by an impulse, as Bullet computes it.
 float mobility(const btRigidBody& body, const btVector3& linear, const btVector3& angular) {
   return body.getInvMass() * linear.length2() + angular.dot(body.getInvInertiaTensorWorld() * angular);
 }
 
-/// Whether the program, or Bullet for it, wants to know what a joint bears: to break it, for example.
+/// Whether the program, or Bullet for it, reads the joint's load, for example to break the joint.
 bool is_watched(const btTypedConstraint& joint) {
   return joint.needsFeedback() || joint.getBreakingImpulseThreshold() < SIMD_INFINITY;
 }
@@ -81,7 +82,7 @@ void add_joint_rows(btTypedConstraint& joint, std::uint32_t a, std::uint32_t b,
                     .of_a = {to_eigen(row.linear_a), to_eigen(row.angular_a)},
                     .of_b = {to_eigen(row.linear_b), to_eigen(row.angular_b)},
                     .target = target_of(row),
-                    .softness = row.softness * gives_way,  // Bullet's is a share of it
+                    .softness = row.softness * gives_way,  // Bullet's softness is a share of it
                     .least = limit_of(row.least),
                     .most = limit_of(row.most),
                     .is_watched = is_watched(joint)});

@@ -16,7 +16,7 @@ namespace {
 
 using Triangle = std::array<Eigen::Vector3f, 3>;
 
-/// A part of a mesh, locked as long as it is read.
+/// A part of a mesh, locked while it is read.
 class LockedPart {
  public:
   LockedPart(const btStridingMeshInterface& mesh, int part) : mesh_(mesh), part_(part) {
@@ -61,7 +61,8 @@ class LockedPart {
   PHY_ScalarType corner_type_ = PHY_FLOAT, index_type_ = PHY_INTEGER;
 };
 
-/// processAllTriangles() locks the mesh anew for each triangle, which takes longer than to find it.
+/// Finds triangles through the mesh's tree: processAllTriangles() locks the mesh anew for each triangle, which takes longer than finding
+/// it.
 class FromTree final : public btNodeOverlapCallback {
  public:
   FromTree(const btStridingMeshInterface& mesh, std::vector<Triangle>& triangles)
@@ -96,9 +97,9 @@ class FromShape final : public btTriangleCallback {
 }  // namespace
 
 void find_triangles(const btConcaveShape& shape, const Bounds<3>& box, std::vector<Triangle>& triangles) {
-  // A program's own kind of mesh may find its triangles in another way.
+  // A program's own type of mesh may find its triangles in another way.
   if (typeid(shape) == typeid(btBvhTriangleMeshShape)) {
-    // Trees and meshes are not const where they are only read.
+    // Trees and meshes are not const even for reading.
     auto& mesh = const_cast<btBvhTriangleMeshShape&>(static_cast<const btBvhTriangleMeshShape&>(shape));
     if (const btOptimizedBvh* const tree = mesh.getOptimizedBvh()) {
       FromTree found(*mesh.getMeshInterface(), triangles);

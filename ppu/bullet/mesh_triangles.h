@@ -1,5 +1,5 @@
 #pragma once
-// The triangles of Bullet's concave shapes.
+// Reads the triangles of Bullet's concave shapes.
 
 #include <BulletCollision/CollisionShapes/btConcaveShape.h>
 
@@ -11,8 +11,8 @@
 
 namespace softcell::ppu {
 
-/// Appends the triangles in a box, in the order in which processAllTriangles() has them.
-/// @param box  in the shape's frame, as the triangles
+/// Appends the triangles in a box, in the order of processAllTriangles().
+/// @param box  in the shape's frame, as are the triangles
 void find_triangles(const btConcaveShape& shape, const Bounds<3>& box,
                     std::vector<std::array<Eigen::Vector3f, 3>>& triangles);
 

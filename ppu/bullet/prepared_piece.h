@@ -1,5 +1,5 @@
 #pragma once
-// Pieces of a broken body with what takes long to make for them.
+// Pieces of a broken body, together with data that takes long to make.
 
 #include <cstdint>
 #include <functional>
@@ -14,7 +14,7 @@ namespace softcell::ppu {
 
 struct PreparedPiece {
   BodyPiece<3> piece;
-  std::unique_ptr<ContactModel> contact;  ///< null: it is not made ahead
+  std::unique_ptr<ContactModel> contact;  ///< null: not made ahead
 };
 
 struct PreparedPieces {
@@ -22,12 +22,12 @@ struct PreparedPieces {
   std::vector<std::vector<std::uint32_t>> vanished;  ///< as PlannedPieces
 };
 
-/// What else pieces need. Of any thread; changes no result.
+/// Makes what else pieces need. May run on any thread; does not change results.
 using PrepareModel = std::function<void(const std::shared_ptr<const SoftBodyModel<3>>&)>;
 
-/// Any thread may do it.
+/// May run on any thread.
 /// @param least_cells  as plan_pieces()
-/// @param whole  of the body that was never broken, for contact models of pieces; null: none are made
+/// @param whole  contact model of the body before it ever broke, for those of pieces; null: none are made
 PreparedPieces prepare_pieces(const std::shared_ptr<const SoftBodyModel<3>>& model,
                               std::span<const std::uint32_t> faces, std::uint32_t least_cells,
                               const ContactModel* whole, const PrepareModel& prepare);

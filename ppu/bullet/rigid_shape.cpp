@@ -59,7 +59,7 @@ std::unique_ptr<btCollisionShape> make_bullet_shape(const RigidShape& shape) {
       return std::make_unique<btCapsuleShape>(shape.radius, shape.height - 2 * shape.radius);
     case RigidShapeKind::kCone: {
       auto cone = std::make_unique<btConeShape>(shape.radius, shape.height);
-      // Bullet's margin lies around a cone, whose lengths would not be as stated.
+      // Bullet adds its margin outside of a cone, so the cone's lengths would not be as stated.
       constexpr float kMargin = 0.005f;
       cone->setMargin(kMargin * std::min(shape.radius, shape.height));
       return cone;

@@ -1,5 +1,5 @@
 #pragma once
-// What rigid bodies consist of, as plain data, and as Bullet has it.
+// The shapes of rigid bodies, as plain data and as Bullet's objects.
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -12,26 +12,26 @@ namespace softcell::ppu {
 
 enum class RigidShapeKind : std::uint8_t { kBox, kSphere, kCylinder, kCapsule, kCone };
 
-/// One of the convex shapes of a rigid body. Metres; round ones stand about their y axis.
+/// One of the convex shapes of a rigid body. Metres; round shapes stand along their y axis.
 struct RigidShape {
   RigidShapeKind kind = RigidShapeKind::kBox;
   Eigen::Vector3f size{1, 1, 1};      ///< of a box
   float radius = 0.5f;                ///< of all others
-  float height = 1;                   ///< of a cylinder, capsule or cone, in all
+  float height = 1;                   ///< of a cylinder, capsule or cone: total height
   Eigen::Vector3f position{0, 0, 0};  ///< of its middle in the body
   Eigen::Quaternionf rotation = Eigen::Quaternionf::Identity();
 };
 
 struct RigidBodySettings {
-  float mass = 0;                     ///< kg; 0: nothing moves it but the program
-  Eigen::Vector3f position{0, 0, 0};  ///< of the frame in which its shapes have their places
+  float mass = 0;                     ///< kg; 0: only the program moves it
+  Eigen::Vector3f position{0, 0, 0};  ///< of the frame in which the shapes are placed
   Eigen::Quaternionf rotation = Eigen::Quaternionf::Identity();  ///< of unit length
   float friction = 0.6f;                                         ///< as of BulletWorld::add_box()
   float restitution = 0;
   bool is_moved = false;  ///< by BulletWorld::move_to(); its mass is 0
 };
 
-/// Whether it lies in the middle of its body as it is.
+/// Whether the shape lies in the middle of its body without a rotation.
 bool is_in_the_middle(const RigidShape& shape);
 
 /// m^3

@@ -1,5 +1,5 @@
 #pragma once
-// A soft body that touches with a rigid sphere at each of its outer particles, as the report of 2008 has it.
+// A soft body that touches with a rigid sphere at each of its outer particles, as in the report of 2008.
 
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
@@ -47,7 +47,7 @@ class SphereBody final : public CoupledBody {
     }
   }
 
-  /// Bullet takes a filter with a body only.
+  /// Bullet takes a filter only when a body is added.
   void set_filter(const CollisionFilter& filter) override {
     CoupledBody::set_filter(filter);
     for (btRigidBody& particle : particles_) {
@@ -56,7 +56,7 @@ class SphereBody final : public CoupledBody {
     }
   }
 
-  /// Of its particles as Bullet knows them.
+  /// A body with spheres does not break.
   bool can_break() const override { return false; }
   Bounds<3> box() const override {
     SC_ASSERT(!particles_.empty(), "a body without contacts has no box in Bullet");
@@ -73,7 +73,7 @@ class SphereBody final : public CoupledBody {
 
   bool can_be_touched() const override { return true; }
 
-  /// Whether particles are no longer as they were gathered last.
+  /// Whether particles in Bullet differ from what was gathered last.
   bool was_pushed() const override {
     if (soft_.asleep()) return false;
     const auto outer = soft_.model().outer();
@@ -87,7 +87,7 @@ class SphereBody final : public CoupledBody {
     return false;
   }
 
-  /// Bullet integrates with the new velocities.
+  /// Sets the new velocities, with which Bullet integrates.
   void apply(float step) override {
     if (soft_.asleep()) return;
     SC_ASSERT(step > 0, "a substep of {} s", step);
@@ -99,7 +99,7 @@ class SphereBody final : public CoupledBody {
     }
   }
 
-  /// Outer particles are taken over, inner ones follow.
+  /// Takes over outer particles from Bullet; inner ones follow them.
   void end_substep(float step, const std::optional<SleepSettings>& sleep) override {
     if (soft_.asleep()) {
       if (sleep && !falls_another_way() && !was_touched()) return;
@@ -112,7 +112,7 @@ class SphereBody final : public CoupledBody {
   }
 
  private:
-  /// Bullet has woken a particle, because something that moves touches it.
+  /// Whether Bullet has woken a particle, because something that moves touches it.
   bool was_touched() const {
     return std::any_of(particles_.begin(), particles_.end(), [](const btRigidBody& particle) {
       return particle.getActivationState() != ISLAND_SLEEPING;
@@ -123,7 +123,7 @@ class SphereBody final : public CoupledBody {
     CoupledBody::wake();
     for (btRigidBody& particle : particles_) {
       particle.forceActivationState(DISABLE_DEACTIVATION);
-      particle.setGravity(world_.getGravity());  // Bullet tells only those that are awake
+      particle.setGravity(world_.getGravity());  // Bullet sets it only for bodies that are awake
     }
   }
 
@@ -135,7 +135,7 @@ class SphereBody final : public CoupledBody {
   }
 
   void add_particle(std::uint32_t number) {
-    // No inertia: a sphere that turned would roll, and a body on rolling particles has no friction.
+    // No inertia: spheres that turned would roll, and a body on rolling particles has no friction.
     btRigidBody::btRigidBodyConstructionInfo info(soft_.model().masses()[number], nullptr, &shape_,
                                                   btVector3(0, 0, 0));
     info.m_startWorldTransform.setOrigin(to_bullet(soft_.position(number)));
@@ -148,16 +148,16 @@ class SphereBody final : public CoupledBody {
               particles_.size());
     btRigidBody& particle = particles_.emplace_back(info);
     particle.setAngularFactor(0);
-    particle.setFlags(0);  // no gyroscopic term for what does not turn
-    // A particle alone never sleeps: its neighbours would be pulled towards one that hangs still.
+    particle.setFlags(0);  // no gyroscopic term, as it does not turn
+    // A single particle never sleeps: its neighbours would be pulled towards one that hangs still.
     particle.setActivationState(DISABLE_DEACTIVATION);
     particle.setUserPointer(&soft_);
     particle.setUserIndex(static_cast<int>(number));
     world_.addRigidBody(&particle);
   }
 
-  /// A btRigidBody is 744 bytes, of which position and velocity are in two places: loops over thousands would
-  /// wait for memory twice for each.
+  /// A btRigidBody takes 744 bytes, with position and velocity far apart: a loop over thousands of them would wait for memory twice for
+  /// each.
   void fetch_ahead(std::size_t i) const {
     constexpr std::size_t kAhead = 8;
     if (i + kAhead >= particles_.size()) return;
@@ -176,8 +176,7 @@ class SphereBody final : public CoupledBody {
     }
   }
 
-  /// The body was changed by its user: so are its particles, and contacts of those that are elsewhere now are
-  /// forgotten.
+  /// The user has changed the body: moves its particles in Bullet, and removes contacts of those that are elsewhere now.
   void place_particles() {
     see_changes();
     const auto outer = soft_.model().outer();
@@ -192,7 +191,7 @@ class SphereBody final : public CoupledBody {
   }
 
   ContactSphere shape_;
-  std::vector<btRigidBody> particles_;  // never grows: Bullet keeps their addresses
+  std::vector<btRigidBody> particles_;  // must never reallocate: Bullet keeps their addresses
 };
 
 }  // namespace softcell::ppu

@@ -15,7 +15,7 @@ namespace {
 
 constexpr float kMovesFrom = 0.05f;  // m/s and rad/s, of kinematic bodies
 
-/// Where a rigid body is.
+/// The frame of a rigid body.
 AttachmentFrame<3> frame_of(const btRigidBody& rigid) {
   AttachmentFrame<3> frame;
   frame.position = frame.end_position = to_eigen(rigid.getWorldTransform().getOrigin());
@@ -25,7 +25,7 @@ AttachmentFrame<3> frame_of(const btRigidBody& rigid) {
 
 bool is_moved_by_bullet(const btRigidBody& rigid) { return !rigid.isStaticOrKinematicObject(); }
 
-/// Kinematic ones, too.
+/// Also for kinematic bodies.
 bool is_slow(const btRigidBody& rigid, float speed) {
   return rigid.getLinearVelocity().length2() < speed * speed &&
          rigid.getAngularVelocity().length2() < speed * speed;
@@ -152,7 +152,7 @@ void SurfaceAttachments::rouse(const Link& link) {
   if (link.rigid != nullptr) link.rigid->activate();
 }
 
-/// Without a look at the body, which may be no more, unless the world has it.
+/// Does not read the body before the world has confirmed it, as it may have been deleted.
 bool SurfaceAttachments::is_there(const Link& link) const {
   const btCollisionObjectArray& objects = world_.getCollisionObjectArray();
   if (objects.findLinearSearch(link.rigid) == objects.size()) return false;
@@ -160,7 +160,7 @@ bool SurfaceAttachments::is_there(const Link& link) const {
   return proxy != nullptr && proxy->m_uniqueId == link.rigid_number;
 }
 
-/// Nothing else looks at the rigid bodies of attachments before it has been called.
+/// Must be called before anything else reads the rigid bodies of attachments.
 void SurfaceAttachments::end_gone() {
   end_links(EndedAttachment::Reason::kGone, [&](Link& link) {
     if (link.rigid == nullptr || is_there(link)) return false;
@@ -169,7 +169,7 @@ void SurfaceAttachments::end_gone() {
   });
 }
 
-/// What only bodies that nothing moves have in common is not attached to each other.
+/// Bodies that are attached to the same static body do not form an island.
 void SurfaceAttachments::find_islands() {
   for (const Island& island : islands_)
     for (SurfaceBody* const body : island.bodies) body->set_attached(false);
@@ -269,7 +269,7 @@ void SurfaceAttachments::fill(Attachments<3>& attachments, std::span<SurfaceBody
   }
 }
 
-/// Evenly, and in the last step to its goal exactly.
+/// Moves evenly, and in the last step exactly to the goal.
 void SurfaceAttachments::Hold::advance(float step) {
   const bool arrives = !(step < seconds);
   const float share = arrives ? 1.0f : step / seconds;
@@ -292,7 +292,7 @@ void SurfaceAttachments::end(float step) {
 }
 
 void SurfaceAttachments::let_sleep(const SleepSettings& sleep) {
-  end_gone();  // the program's callbacks may have removed some in this substep
+  end_gone();  // the program's callbacks may have removed bodies in this substep
   for (const Island& island : islands_) {
     const bool rest = std::all_of(island.bodies.begin(), island.bodies.end(),
                                   [&](const auto* body) {

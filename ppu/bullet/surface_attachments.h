@@ -1,5 +1,5 @@
 #pragma once
-// The attachments of bodies that touch with their surfaces: what they are attached to in Bullet, what sleeps together, and how they end.
+// The attachments of bodies that touch with their surfaces: the links to objects in Bullet, their islands for sleeping, and how they end.
 
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
@@ -26,54 +26,55 @@ class SurfaceAttachments {
  public:
   explicit SurfaceAttachments(const btDiscreteDynamicsWorld& world) : world_(world) {}
 
-  /// To the world, or to a rigid body of it. @throws std::invalid_argument  as validate(), particles_of() and AttachmentRows; a rigid
-  /// body that is not in the world; a rope to the world without a point.
+  /// Attaches to the world, or to one of its rigid bodies. @throws std::invalid_argument  as validate(), particles_of() and AttachmentRows;
+  /// a rigid body that is not in the world; a rope to the world without a point.
   AttachmentId add(SurfaceBody& body, const Patch<3>& patch, btRigidBody* rigid,
                    const AttachmentSettings<3>& settings);
-  /// To another soft body. @throws as above; it is the same body.
+  /// Attaches to another soft body. @throws as above; it is the same body.
   AttachmentId add(SurfaceBody& body, const Patch<3>& patch, SurfaceBody& other, const Patch<3>& other_patch,
                    const AttachmentSettings<3>& settings);
-  void remove(AttachmentId id);  ///< @throws std::invalid_argument  there is none of that number.
-  /// @throws std::invalid_argument  there is none of that number, or it is none to the world.
+  void remove(AttachmentId id);  ///< @throws std::invalid_argument  there is no attachment with that number.
+  /// @throws std::invalid_argument  there is no attachment with that number, or it is not to the world.
   void move(AttachmentId id, const Eigen::Vector3f& position, const Eigen::Quaternionf& rotation,
             float seconds);
   std::optional<AttachmentState<3>> state(AttachmentId id) const;
   std::optional<AttachmentEnds<3>> ends(AttachmentId id) const;
   std::vector<EndedAttachment> take_ended();
-  /// A soft body goes, and its attachments with it.
+  /// Removes the attachments of a soft body that is being removed.
   void forget(const SurfaceBody& body);
   using Piece = PieceOfBody<SurfaceBody>;
-  /// A body has fallen into pieces, of which it is one itself. Its attachments go on with the piece that has all particles of their patch,
-  /// each of them once. Where none has, they end: their patch has vanished with a piece, or was torn.
+  /// Moves the attachments of a body that has broken into pieces, of which the body itself is one, to the piece that has all particles of
+  /// their patch, each exactly once. If no piece has, they end: their patch has vanished with a piece, or was torn.
   /// @param vanished  as PlannedPieces
   void follow_pieces(const SurfaceBody& body, std::span<const Piece> pieces,
                      std::span<const std::vector<std::uint32_t>> vanished);
 
   bool empty() const { return links_.empty(); }
-  /// Before a substep: ends those to rigid bodies that are no longer in the world, and wakes what is attached to what is awake.
+  /// Call it before a substep: ends attachments to rigid bodies that have left the world, and wakes bodies that are attached to others that
+  /// are awake.
   void begin();
-  /// Takes what a body is attached to, and does not touch, off what it may meet.
+  /// Removes from `near` the obstacles that a body is attached to without touching them.
   void part(const SurfaceBody& body, BulletObstacles& obstacles, std::vector<std::uint32_t>& near) const;
-  /// Whether a rigid body is attached to what the soft one is, directly or not: they sleep together.
+  /// Whether a rigid body and a soft one are attached, directly or through others: they sleep together.
   bool joins(const SurfaceBody& body, const btCollisionObject& object) const;
-  /// Whether a soft body is attached to it.
+  /// Whether a soft body is attached to the object.
   bool are_to(const btCollisionObject& object) const;
-  /// The attachments of the substep. @param bodies  by their numbers in it
+  /// Adds the attachments of the substep. @param bodies  by their numbers in the substep
   void fill(Attachments<3>& attachments, std::span<SurfaceBody* const> bodies, BulletObstacles& obstacles,
             float step);
-  /// After it: those that broke end, and what the program moves has moved.
+  /// Call it after a substep: ends attachments that broke, and completes the motion of those that the program moves.
   void end(float step);
-  /// Puts what is attached to each other to sleep when all of it is at rest.
+  /// Puts an island of attached bodies to sleep when all of it is at rest.
   void let_sleep(const SleepSettings& sleep);
 
  private:
-  /// Where the world holds a link, and where the program moves that to.
+  /// The place in the world that holds a link, and the place to which the program moves it.
   struct Hold {
     AttachmentFrame<3> frame{};  // at the substep's beginning
     Eigen::Vector3f goal_position{0, 0, 0};
     Eigen::Quaternionf rotation{1, 0, 0, 0}, goal_rotation{1, 0, 0, 0};
-    float seconds = 0;   // until it is there
-    bool moves = false;  // it is not there yet
+    float seconds = 0;   // until it arrives
+    bool moves = false;  // it has not arrived yet
 
     void advance(float step);
   };
@@ -82,12 +83,12 @@ class SurfaceAttachments {
     SurfaceBody* a = nullptr;
     SurfaceBody* b = nullptr;      // null: a rigid body or the world
     btRigidBody* rigid = nullptr;  // null: the world
-    int rigid_number = 0;          // another for a body that is added later, even at the same address
+    int rigid_number = 0;          // differs for a body that is added later, even at the same address
     bool touch = false;
     AttachmentRows<3> rows;
     Hold hold;
   };
-  /// What is attached to each other, directly or not.
+  /// Bodies that are attached to each other, directly or through others.
   struct Island {
     std::vector<SurfaceBody*> bodies;
     std::vector<btRigidBody*> rigids;

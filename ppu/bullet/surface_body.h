@@ -1,5 +1,5 @@
 #pragma once
-// A soft body that touches with its drawn surface. Bullet does not know it: surface_contacts.h moves it.
+// A soft body that touches with its drawn surface. Bullet does not know of it: surface_contacts.h moves it.
 
 #include <algorithm>
 #include <cstdint>
@@ -18,15 +18,15 @@ namespace softcell::ppu {
 
 class SurfaceBody final : public CoupledBody {
  public:
-  /// @param contact  of the model; outlives this
-  /// @param number  of no other body of the world
+  /// @param contact  of the model; must outlive this body
+  /// @param number  different from those of all other bodies of the world
   SurfaceBody(btDiscreteDynamicsWorld& world, SoftBody<3> soft, const ContactModel& contact,
               std::uint32_t number)
       : CoupledBody(world, std::move(soft)), contact_(&contact), number_(number) {}
 
   std::uint32_t number() const { return number_; }
   const ContactModel& contact() const { return *contact_; }
-  /// The body has another model than before. @param contact  of that; outlives this
+  /// Tells that the body has another model than before. @param contact  of the new model; must outlive this body
   void set_contact(const ContactModel& contact) {
     SC_ASSERT(contact.model() == soft_.shared_model(), "a body of {} particles touches as one of {}",
               soft_.model().particles(), contact.masses().size());
@@ -41,7 +41,7 @@ class SurfaceBody final : public CoupledBody {
   }
   bool was_pushed() const override { return false; }
 
-  /// Gravity; contacts come behind it and move the particles.
+  /// Adds gravity; contacts come after it and move the particles.
   void apply(float step) override {
     if (soft_.asleep()) return;
     SC_ASSERT(step > 0, "a substep of {} s", step);
@@ -63,10 +63,10 @@ class SurfaceBody final : public CoupledBody {
     place_of_sides_ = soft_.position(0);
     is_still_ = sleep && stillness_.seconds() >= sleep->seconds;
   }
-  /// Long enough to fall asleep, if nothing else kept it awake.
+  /// Whether it has been still for long enough to fall asleep, if nothing else kept it awake.
   bool is_still() const { return is_still_; }
 
-  /// It sleeps with what it touches (surface_contacts.h) or, when it is attached, with what it is attached to.
+  /// The body sleeps together with those that it touches (surface_contacts.h) or, if it is attached, with those that it is attached to.
   bool may_fall_asleep(const SleepSettings& sleep) const {
     return stillness_.seconds() >= sleep.seconds && !holds_a_moving_body_;
   }
@@ -83,12 +83,12 @@ class SurfaceBody final : public CoupledBody {
   void set_attached(bool attached) { is_attached_ = attached; }
   bool is_attached() const { return is_attached_; }
 
-  /// Bodies that touched each other in the last substep, directly or through others, have the same number. None: it touched nothing
-  /// soft yet.
+  /// Bodies that touched each other in the last substep, directly or through others, have the same number. None: it has not touched a soft
+  /// body yet.
   void set_island(std::uint32_t island) { island_ = island; }
   std::optional<std::uint32_t> island() const { return island_; }
 
-  /// Whether a rigid body that is awake lies on it: then it must go on holding it.
+  /// Whether a rigid body that is awake lies on it: then the soft body must go on carrying it.
   void set_holds_a_moving_body(bool holds) { holds_a_moving_body_ = holds; }
 
   bool can_be_touched() const override { return true; }
@@ -105,7 +105,7 @@ class SurfaceBody final : public CoupledBody {
   /// Whether something that it has seen since it fell asleep is gone, has changed or is elsewhere, however slowly it went, by more than
   /// contacts let it be in the body.
   bool notices_a_change() {
-    if (!box_asleep_) box_asleep_ = soft_.bounds();  // a sleeper that was assigned to it
+    if (!box_asleep_) box_asleep_ = soft_.bounds();  // for a sleeping body that was assigned to this one
     const Eigen::Vector3f middle = 0.5f * (box_asleep_->low + box_asleep_->high);
     const float far = kCreep * soft_.model().lattice().spacing;
     return std::ranges::any_of(seen_,

@@ -29,7 +29,7 @@ bool moves(const btCollisionObject& object) {
 const ContactModel& SurfaceContacts::contact_model(const std::shared_ptr<const SoftBodyModel<3>>& model) {
   std::unique_ptr<ContactModel>& known = models_[model.get()];
   if (known) return *known;
-  // Without a mesh the surface is the lattice's own boundary, which is measured at once.
+  // Without a mesh the surface is the lattice's own boundary, which is quickly measured.
   known = model->is_piece() && !model->mesh().triangles.empty()
               ? std::make_unique<ContactModel>(model, contact_model(model->whole()))
               : std::make_unique<ContactModel>(model);
@@ -129,7 +129,8 @@ void SurfaceContacts::step(std::span<SurfaceBody* const> bodies, float step) {
   obstacles_.apply(at_rest_);
 }
 
-/// Rigid bodies that only soft ones at rest are near; of those that no soft one is near, which links may move, all, or none.
+/// Finds rigid bodies near which all soft ones are at rest. A rigid body without a soft one near it, which links may move, counts if all
+/// soft ones are at rest.
 void SurfaceContacts::find_at_rest(std::span<SurfaceBody* const> bodies) {
   enum : char { kAlone, kAtRest, kDisturbed };
   near_rigids_.assign(obstacles_.objects().size(), kAlone);
@@ -157,7 +158,7 @@ void SurfaceContacts::move(std::span<SurfaceBody* const> bodies, float step) {
   }
 }
 
-/// Before anything is solved: what sleeps would stop like a wall whatever hits it, and take its momentum away.
+/// Wakes bodies before anything is solved: a sleeping body would stop everything that hits it like a wall, and absorb its momentum.
 void SurfaceContacts::wake_those_in_the_way(std::span<SurfaceBody* const> bodies) {
   const auto sleeps = [&](const SurfaceBody* body) { return body->soft().asleep(); };
   moving_.clear();
@@ -177,8 +178,8 @@ void SurfaceContacts::wake_those_in_the_way(std::span<SurfaceBody* const> bodies
   }
 }
 
-/// A body that has come to the world since then has no island and waits. Attached bodies fall asleep with what they are
-/// attached to, but may keep their island awake.
+/// A body that was added after the last substep has no island and waits. Attached bodies fall asleep with those that they are attached to,
+/// but may keep their island awake.
 void SurfaceContacts::let_sleep(std::span<SurfaceBody* const> bodies, const SleepSettings& sleep) {
   is_restless_.assign(islands_.numbers(), false);
   for (const SurfaceBody* const body : bodies)
@@ -217,7 +218,7 @@ void SurfaceContacts::note_touches(std::span<SurfaceBody* const> bodies) {
   }
 }
 
-/// Of bodies where the substep has moved them, also of those that sleep.
+/// Uses bodies' places after the substep, also those of sleeping bodies.
 void SurfaceContacts::note_triggers(std::span<SurfaceBody* const> bodies, float step) {
   triggers_.begin(world_, step);
   for (SurfaceBody* const body : bodies) {

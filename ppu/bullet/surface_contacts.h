@@ -1,5 +1,5 @@
 #pragma once
-// The contacts of all soft bodies of a BulletSoftBodies that touch with their surfaces.
+// Handles the contacts of all soft bodies of a BulletSoftBodies that touch with their surfaces.
 
 #include <cstdint>
 #include <map>
@@ -23,39 +23,40 @@ namespace softcell::ppu {
 /// Used by the thread that steps the world.
 class SurfaceContacts {
  public:
-  /// @param worker  finds and solves contacts; null: the thread that steps the world does
+  /// @param worker  finds and solves contacts; null: the thread that steps the world does it
   SurfaceContacts(btDiscreteDynamicsWorld& world, std::shared_ptr<ContactWorker> worker)
       : world_(world), worker_(std::move(worker)) {
     stage_.worker = worker_.get();
     stage_.attachments = &in_step_;
   }
 
-  /// What bodies of one model share, made at the first call. Good as long as this; of a piece of a broken body until forget_pieces().
+  /// The data that all bodies of a model share, made at the first call. Valid as long as this object; for a piece of a broken body until
+  /// forget_pieces().
   const ContactModel& contact_model(const std::shared_ptr<const SoftBodyModel<3>>& model);
-  /// Keeps what was made elsewhere, as from contact_model().
+  /// Keeps a model that was made elsewhere, as if contact_model() had made it.
   void adopt(std::unique_ptr<ContactModel> contact);
-  /// Frees what is kept of pieces that none of these bodies is any longer. @pre between substeps
+  /// Frees what is kept of pieces if none of these bodies has their model any longer. @pre between substeps
   void forget_pieces(std::span<SurfaceBody* const> bodies);
 
-  /// Finds and solves the contacts of the substep that begins, moves all particles of bodies that are awake,
-  /// and gives rigid bodies their impulses. Bodies that are touched wake.
-  /// @param bodies  their velocities are those of the substep's end, without contacts
+  /// Finds and solves the contacts of the substep that begins, moves all particles of bodies that are awake, and gives rigid bodies their
+  /// impulses. Wakes bodies that are touched.
+  /// @param bodies  with the velocities at the substep's end without contacts
   void step(std::span<SurfaceBody* const> bodies, float step);
 
   SurfaceAttachments& attachments() { return attachments_; }
   const SurfaceAttachments& attachments() const { return attachments_; }
 
-  /// Bodies that have rested fall asleep, if all have that they touch.
+  /// Puts bodies to sleep that have been at rest, if everything that they touch has been, too.
   void let_sleep(std::span<SurfaceBody* const> bodies, const SleepSettings& sleep);
 
-  /// Appends the contacts of the last substep that press.
+  /// Appends the contacts of the last substep whose impulse is above 0.
   void append_contacts(std::vector<Contact>& contacts) const;
 
-  /// Whether events are kept from the next substep on.
+  /// Sets whether events are recorded from the next substep on.
   void watch(bool events);
-  /// What has begun, gone on or ended since the last call.
+  /// Touches that have begun, gone on or ended since the last call.
   std::vector<ContactEvent> poll_events() { return touches_.poll(); }
-  /// A body goes: what it touched ends.
+  /// Ends the touches of a body that is being removed.
   void forget(const SoftBody<3>& body);
 
  private:
@@ -79,8 +80,8 @@ class SurfaceContacts {
   BulletLinks links_;
   SurfaceAttachments attachments_{world_};
   Attachments<3> in_step_;
-  std::vector<char> near_rigids_;  // of each rigid body: which soft ones are near
-  std::vector<bool> at_rest_;      // likewise
+  std::vector<char> near_rigids_;  // for each rigid body: which kind of soft ones are near
+  std::vector<bool> at_rest_;      // for each rigid body
   ContactStage stage_;
   std::vector<BodyInStage> in_stage_;
   std::vector<const SoftBody<3>*> softs_;  // of the last substep
@@ -89,11 +90,11 @@ class SurfaceContacts {
   std::vector<bool> is_restless_;          // of each island
   bool watches_ = false;
   TouchLog<ContactEvent> touches_;
-  // While events are kept, in each substep:
+  // Used in each substep while events are recorded:
   std::vector<PressingContact> pressing_;
   BulletObstacles triggers_{BulletObstacles::Objects::kTriggers};
-  std::vector<std::uint32_t> near_;  // triggers_ near a body
-  CellFinder cells_;                 // of a body near one
+  std::vector<std::uint32_t> near_;  // those of triggers_ near a body
+  CellFinder cells_;                 // of a body near a trigger
 };
 
 }  // namespace softcell::ppu

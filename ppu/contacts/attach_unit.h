@@ -1,5 +1,5 @@
 #pragma once
-// The records of a job of the kernel `attach`, before they are in a worker's memory.
+// The records of a job of the kernel `attach`, before they are copied to a worker's memory.
 
 #include <cstdint>
 #include <vector>
@@ -8,9 +8,9 @@
 
 namespace softcell::ppu {
 
-/// What attachments write into. Slots are numbers of particles until AttachUnits has given them slots.
+/// Records that attachments append. Slots hold particle numbers until AttachUnits replaces them by slots.
 struct AttachUnit {
-  /// Particles of a body beside each other.
+  /// Successive particles of a body.
   struct Run {
     std::uint32_t body = 0, first = 0, count = 0;
   };
@@ -20,9 +20,9 @@ struct AttachUnit {
   std::vector<spu::AttachRow> rows;
   std::vector<spu::AttachEntry> entries;
   std::vector<const spu::SolveRigid*>
-      rigids;               ///< in the worker's memory (RigidSets): those to which links are
-  std::uint32_t slots = 0;  ///< of all runs
-  bool pushes = false;      ///< one of the links does
+      rigids;               ///< in the worker's memory (RigidSets): those that links refer to
+  std::uint32_t slots = 0;  ///< number of slots in all runs
+  bool pushes = false;      ///< at least one link pushes
 
   void clear() {
     runs.clear(), links.clear(), points.clear(), rows.clear(), entries.clear(), rigids.clear();

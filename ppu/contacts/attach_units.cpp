@@ -16,7 +16,7 @@ bool fits(const AttachUnit& unit) {
          unit.rigids.size() <= spu::kAttachMaxRigids;
 }
 
-/// How much a unit has.
+/// The sizes of a unit's lists.
 struct Extent {
   explicit Extent(const AttachUnit& unit)
       : runs(unit.runs.size()),
@@ -83,7 +83,8 @@ void AttachUnits::begin_unit(std::size_t first) {
   units_[count_++].clear();
 }
 
-/// To the last unit. @return  false: there is no room, or the kernel cannot solve one of them; a part of them is there
+/// Appends to the last unit. @return  false: there is no room, or the kernel cannot solve one of them; then a part of them has been
+/// appended
 bool AttachUnits::append(std::span<const std::uint32_t> together, const AttachmentSolver<3>& attachments,
                          const RigidSets& sets) {
   AttachUnit& unit = units_[count_ - 1];
@@ -111,7 +112,7 @@ bool AttachUnits::append(std::span<const std::uint32_t> together, const Attachme
   return fits(unit);
 }
 
-/// Runs of particles, with those in between that are few.
+/// Makes runs of particles. A run also covers a few particles between the held ones.
 void AttachUnits::give_slots(AttachUnit& unit) {
   constexpr std::uint32_t kFew = 12;
   std::ranges::sort(held_, {}, [](const HeldParticle& held) { return std::pair(held.body, held.particle); });
@@ -129,7 +130,7 @@ void AttachUnits::give_slots(AttachUnit& unit) {
   }
 }
 
-/// As few units as there is room for: a job takes longer to begin than some attachments take.
+/// Makes as few units as there is room for: starting a job takes longer than solving a few attachments.
 bool AttachUnits::write(const AttachmentSolver<3>& attachments, std::size_t bodies, std::size_t rigids,
                         const RigidSets& sets) {
   count_ = 0;

@@ -1,6 +1,6 @@
 #pragma once
-// The attachments of a substep for a ContactWorker: in units that have no soft body and no rigid one in common, which can be solved at the
-// same time.
+// Groups the attachments of a substep for a ContactWorker into units. Units share no soft body and no rigid body, so they can be solved at
+// the same time.
 
 #include <cstddef>
 #include <cstdint>
@@ -17,13 +17,13 @@ namespace softcell::ppu {
 /// Used by one thread, in the order begin(), write(), read(). Allocates when there are more attachments than ever before.
 class AttachUnits {
  public:
-  /// Joins the rigid bodies that attachments move.
+  /// Joins rigid bodies that one attachment moves together.
   static void begin(const AttachmentSolver<3>& attachments, RigidSets& sets);
-  /// @param bodies, rigids  how many there are   @param sets  arranged
+  /// @param bodies, rigids  how many there are   @param sets  already arranged
   /// @return  false: the kernel cannot solve all attachments; then there is no unit.
   bool write(const AttachmentSolver<3>& attachments, std::size_t bodies, std::size_t rigids,
              const RigidSets& sets);
-  /// What the worker has made of units().
+  /// Reads back what the worker has computed for units().
   void read(AttachmentSolver<3>& attachments) const;
 
   std::span<AttachUnit> units() { return std::span(units_).first(count_); }
@@ -39,17 +39,17 @@ class AttachUnits {
               const RigidSets& sets);
   void give_slots(AttachUnit& unit);
 
-  DisjointSets together_;  // bodies, then rigid ones
+  DisjointSets together_;  // of soft bodies, then of rigid ones
   std::vector<std::uint32_t> order_,
-      first_;                  // attachments by what belongs together; where each begins, and the end
+      first_;                  // attachments that belong together one after the other; where each list begins
   std::vector<bool> is_held_;  // of each body
   std::vector<AttachUnit> units_;
-  std::vector<std::size_t> begins_;  // of each unit: its first one in order_
+  std::vector<std::size_t> begins_;  // of each unit: index of its first attachment in order_
   std::size_t count_ = 0;            // of units in use
-  /// Of a record that has no slot yet.
+  /// A particle of a record that has no slot yet.
   struct HeldParticle {
     std::uint32_t body = 0, particle = 0, record = 0;
-    bool is_entry = false;  // else it is a point's
+    bool is_entry = false;  // of an entry; else of a point
   };
   std::vector<HeldParticle> held_;
 };

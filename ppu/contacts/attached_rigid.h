@@ -1,5 +1,5 @@
 #pragma once
-// A rigid body that soft ones are attached to, in two dimensions and three.
+// A rigid body that soft bodies are attached to, in two dimensions and three.
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -9,7 +9,7 @@
 
 namespace softcell::ppu {
 
-/// As attachments in two dimensions see it. @see ContactRigid
+/// A rigid body for attachments in two dimensions. @see ContactRigid
 struct AttachedRigid2d {
   Eigen::Vector2f centre{0, 0};    ///< of mass, metres
   Eigen::Vector2f velocity{0, 0};  ///< m/s, of the centre
@@ -18,7 +18,7 @@ struct AttachedRigid2d {
   float inverse_inertia = 0;       ///< 1/(kg m^2)
 };
 
-/// What attachments do with one.
+/// The operations of attachments on a rigid body.
 template <int kDimension>
 struct AttachedRigid;
 
@@ -28,18 +28,18 @@ struct AttachedRigid<3> {
   using Vector = Eigen::Vector3f;
 
   static Vector velocity_at(const Rigid& rigid, const Vector& point) { return rigid.velocity_at(point); }
-  /// 1/kg. What rigid bodies lie on does not hold those that soft ones are attached to (supports.h): none of them has a coupling.
+  /// 1/kg. Rigid bodies with attachments are never held by their supports (supports.h), so that none of them has a coupling.
   static Eigen::Matrix3f linear_mobility(const Rigid& rigid) {
     return rigid.held ? rigid.held->linear
                       : Eigen::Matrix3f(rigid.inverse_mass * Eigen::Matrix3f::Identity());
   }
   /// Whether it moves along all axes alike.
   static bool is_free(const Rigid& rigid) { return !rigid.held; }
-  /// m/s^2: how a point that turns with it leaves its straight way.
+  /// m/s^2: centripetal acceleration of a point that turns with the body.
   static Vector curve(const Rigid& rigid, const Vector& point) {
     return rigid.spin.cross(rigid.spin.cross(Vector(point - rigid.centre)));
   }
-  /// 1/kg: the velocity that impulses at the point give it.
+  /// 1/kg: the matrix that gives the velocity of the point by an impulse at it.
   static Eigen::Matrix3f mobility(const Rigid& rigid, const Vector& point) {
     const Vector r = point - rigid.centre;
     Eigen::Matrix3f cross;
@@ -51,7 +51,7 @@ struct AttachedRigid<3> {
     rigid.spin += rigid.inverse_inertia * Vector(point - rigid.centre).cross(impulse);
   }
 
-  // For all particles of a weld at once. Axial vectors have a component for each axis of rotation.
+  // For all particles of a weld at once. Axial vectors have one component per axis of rotation.
   static constexpr int kAxes = 3;
   using Axial = Eigen::Vector3f;
   static Axial moment(const Vector& arm, const Vector& force) { return arm.cross(force); }

@@ -1,5 +1,5 @@
 #pragma once
-// What attachments in Bullet and in Box2D have in common: links by their numbers, of which each knows its rows (attachment_rows.h).
+// What the couplings to Bullet and Box2D share about attachments: a list of links with numbers, each with its rows (attachment_rows.h).
 
 #include <algorithm>
 #include <cmath>
@@ -19,13 +19,13 @@
 
 namespace softcell::ppu {
 
-/// Whether what is attached touches what it is attached to.
+/// Whether the attached bodies also collide with each other.
 template <int kDimension>
 bool touches(const AttachmentSettings<kDimension>& settings) {
   return settings.touch.value_or(settings.kind == AttachmentKind::kRope);
 }
 
-/// Where the world holds a patch. @throws std::invalid_argument  a rope has no point
+/// The place in the world that holds a patch. @throws std::invalid_argument  a rope has no point
 template <int kDimension>
 AttachmentFrame<kDimension> frame_in_world(const AttachmentSettings<kDimension>& settings,
                                            const PatchParticles<kDimension>& particles) {
@@ -36,7 +36,7 @@ AttachmentFrame<kDimension> frame_in_world(const AttachmentSettings<kDimension>&
   return frame;
 }
 
-/// @throws std::invalid_argument  not the seconds in which an attachment can be moved
+/// @throws std::invalid_argument  an attachment cannot be moved within that many seconds
 inline void check_seconds_of_move(float seconds) {
   if (!(seconds >= 0) || !std::isfinite(seconds))
     throw std::invalid_argument("an attachment is moved within " + base::shortest(seconds) +
@@ -50,12 +50,12 @@ struct PieceOfBody {
   std::span<const std::uint32_t> particle_of;
 };
 
-/// A body has fallen into pieces, of which it is one itself: its attachments go on with the piece that has all particles of their patch,
-/// each of them once. If only a piece that was too small to stay has them, the patch is gone with it.
+/// Moves the attachments of a body that has broken into pieces, of which the body itself is one, to the piece that has all particles of
+/// their patch, each exactly once. If only a piece that was too small to keep has them, the patch is gone with it.
 template <class Body>
 class PiecesOfPatches {
  public:
-  /// @param vanished  of each piece that did not stay: which particles of the whole its own were, ascending
+  /// @param vanished  for each piece that was not kept: the particles of the whole that it had, ascending
   PiecesOfPatches(const Body& body, std::span<const PieceOfBody<Body>> pieces,
                   std::span<const std::vector<std::uint32_t>> vanished)
       : body_(body), pieces_(pieces), vanished_(vanished) {
@@ -68,13 +68,13 @@ class PiecesOfPatches {
     }
   }
 
-  /// Before follow(). @tparam Link  as AttachmentLinks
+  /// Whether one of the link's patches is gone. Call it before follow(). @tparam Link  as AttachmentLinks
   template <class Link>
   bool is_gone(const Link& link) const {
     return (link.a == &body_ && is_gone(link.rows.particles(false))) ||
            (link.b == &body_ && is_gone(link.rows.particles(true)));
   }
-  /// @tparam Link  as AttachmentLinks   @return false: no piece has all particles of one of its patches
+  /// Moves the link to the pieces. @tparam Link  as AttachmentLinks   @return false: no piece has all particles of one of its patches
   template <class Link>
   bool follow(Link& link) const {
     return (link.a != &body_ || follow(link.a, link.rows, false)) &&
@@ -101,7 +101,7 @@ class PiecesOfPatches {
     }
     return false;
   }
-  /// None: the piece does not have all of them.
+  /// The patch's particle numbers in a piece; none: the piece does not have all of them.
   std::optional<std::vector<std::uint32_t>> numbers_in(std::size_t piece,
                                                        std::span<const std::uint32_t> patch) const {
     std::vector<std::uint32_t> numbers;
@@ -116,10 +116,10 @@ class PiecesOfPatches {
   const Body& body_;
   std::span<const PieceOfBody<Body>> pieces_;
   std::span<const std::vector<std::uint32_t>> vanished_;
-  std::vector<std::map<std::uint32_t, std::uint32_t>> number_of_;  // of particles that a piece has once
+  std::vector<std::map<std::uint32_t, std::uint32_t>> number_of_;  // of particles that it has once
 };
 
-/// The attachments that there are, in the order in which they were made.
+/// All attachments, in the order in which they were made.
 /// @tparam Link  has `id`, `rows`, and soft bodies `a` and `b`
 template <class Link>
 class AttachmentLinks {
@@ -130,22 +130,23 @@ class AttachmentLinks {
   auto begin() const { return links_.begin(); }
   auto end() const { return links_.end(); }
 
-  /// Gives it its number.
+  /// Appends a link and gives it a number.
   Link& add(Link link) {
     link.id = AttachmentId{next_++};
     return *links_.emplace_back(std::make_unique<Link>(std::move(link)));
   }
-  /// Null: there is none of that number.
+  /// Null: there is no link with that number.
   Link* find(AttachmentId id) const {
     const auto found = std::ranges::find_if(links_, [&](const auto& link) { return link->id == id; });
     return found == links_.end() ? nullptr : found->get();
   }
-  /// @throws std::invalid_argument  there is none of that number
+  /// @throws std::invalid_argument  there is no link with that number
   Link& at(AttachmentId id) const {
     if (Link* const link = find(id)) return *link;
     throw std::invalid_argument("there is no attachment " + std::to_string(static_cast<std::uint32_t>(id)));
   }
-  /// Takes out those of which `which(link)` is true; it is asked once for each. Without any, nothing is allocated. @return them, in order
+  /// Removes the links for which `which(link)` is true; calls it once for each. Allocates nothing if there are none. @return the removed
+  /// links, in order
   template <class Which>
   Pointers take(const Which& which) {
     Pointers taken;

@@ -9,7 +9,7 @@
 namespace softcell::ppu {
 namespace {
 
-/// How many of the kernel's particles a particle is.
+/// How many particles of the kernel stand for one particle.
 template <int kDimension>
 constexpr std::uint32_t kColumn = kDimension == 2 ? 2 : 1;
 
@@ -31,7 +31,7 @@ void lift_matrix(const Eigen::Matrix<float, kDimension, kDimension>& from, float
     for (int row = 0; row < kDimension; ++row) to[column][row] = from(row, column);
 }
 
-/// About the axis across the plane, in two dimensions.
+/// In two dimensions: about the axis perpendicular to the plane.
 void lift_inertia(const Eigen::Matrix3f& from, float (&to)[3][4]) { lift_matrix<3>(from, to); }
 void lift_inertia(const Eigen::Matrix<float, 1, 1>& from, float (&to)[3][4]) { to[2][2] = from(0, 0); }
 
@@ -68,7 +68,7 @@ bool AttachmentRecords<kDimension>::write(bool once, AttachUnit& unit) const {
   return true;
 }
 
-/// Particles of a column share their row's compliance: each alone gives way by as much.
+/// The particles of a column share their row's compliance: each of them alone gives way as far as the row.
 template <int kDimension>
 void AttachmentRecords<kDimension>::write_points(spu::AttachLink& link, AttachUnit& unit) const {
   constexpr auto kCopies = kColumn<kDimension>;
@@ -126,7 +126,7 @@ void AttachmentRecords<kDimension>::write_rows(spu::AttachLink& link, AttachUnit
   if (rows_.sides_.b != nullptr) write_entries(true, link, unit);
 }
 
-/// The places of a side have the same particles in the same order.
+/// All places of a side have the same particles in the same order.
 template <int kDimension>
 void AttachmentRecords<kDimension>::write_entries(bool of_b, spu::AttachLink& link, AttachUnit& unit) const {
   constexpr auto kCopies = kColumn<kDimension>;

@@ -1,6 +1,6 @@
 #pragma once
-// AttachmentRows as records of the kernel `attach`. In two dimensions a particle is a column of two, each of half its mass, as contacts have
-// it (flat_layer.h).
+// Converts AttachmentRows to records of the kernel `attach`, and back. In two dimensions a particle is a column of two, each of half its
+// mass, as for contacts (flat_layer.h).
 
 #include <span>
 
@@ -10,16 +10,16 @@
 
 namespace softcell::ppu {
 
-/// Between begin() of its rows and the next one, in place of iterate() and finish().
+/// Used between begin() of its rows and the next begin(), instead of iterate() and finish().
 template <int kDimension>
 class AttachmentRecords {
  public:
   explicit AttachmentRecords(AttachmentRows<kDimension>& rows) : rows_(rows) {}
 
-  /// Appends what the kernel needs. The caller sets AttachLink::rigid, and gives slots. @param once  as AttachLink::once
+  /// Appends the records that the kernel needs. The caller sets AttachLink::rigid and assigns slots. @param once  as AttachLink::once
   /// @return false: the kernel cannot solve it, and nothing is appended.
   bool write(bool once, AttachUnit& unit) const;
-  /// What the kernel has made of it.
+  /// Reads back the kernel's results.
   void read(const spu::AttachLink& link, std::span<const spu::AttachPoint> points,
             std::span<const spu::AttachRow> rows);
 

@@ -15,9 +15,9 @@
 namespace softcell::ppu {
 namespace {
 
-// No more than this many cells of an error of position go in a substep: what is far from where it should be flies there.
+// A substep corrects at most this many cells of an error of position: particles far from their place would otherwise fly there.
 constexpr float kMostPushInCells = 0.25f;
-// Of a place that several particles have in common a share of it: pushes deform the patch, too, which it works off in some substeps.
+// Places of several particles correct only this share: pushes deform the patch, too, which takes some substeps to recover.
 constexpr float kPushShareOfPlaces = 0.2f;
 
 /// Mass, middle and spread of a patch.
@@ -123,7 +123,8 @@ class TurnedPatches {
       Eigen::Matrix<double, kDimension, kDimension>::Zero();
 };
 
-/// By the formulas for its size, which is known at compile time: a factorisation for all sizes takes ten times as long to compile.
+/// Inverts a matrix by the formulas for its size, which is known at compile time: a factorisation for all sizes takes ten times as long to
+/// compile.
 /// @pre there are 1 to kMost rows
 template <int kMost, typename Matrix>
 Matrix inverse_of_few(const Matrix& matrix) {
@@ -240,7 +241,7 @@ void AttachmentRows<kDimension>::add_hinge(const PatchParticles<kDimension>& a,
   } else {
     const Spread<kDimension> spread = spread_of(a, b);
     const Vector axis = settings_.axis.normalized();
-    // Such that the two do not feel each other around the middle.
+    // So that impulses at the two places do not act on each other.
     const float reach = 1 / (spread.inverse_of_root * axis).norm();
     for (const float way : {-reach, reach}) add_row(point + way * axis, a, b, frame);
   }
@@ -327,7 +328,7 @@ void AttachmentRows<kDimension>::Side::push(const Place& place, const AttachedBo
   }
 }
 
-/// Soft bodies only: a rigid one is moved by its engine.
+/// Of soft bodies only: a rigid one is moved by its engine.
 template <int kDimension>
 auto AttachmentRows<kDimension>::relative_push(const Row& row) const -> Vector {
   const Vector push = a_.of(row.a, sides_.a.pushes);
@@ -382,7 +383,8 @@ float AttachmentRows<kDimension>::most_push(const AttachedBody<kDimension>& body
   return kMostPushInCells * body.spacing / step_;
 }
 
-/// m/s: the most that an error of position may ask of a row. A compliant row gives way, and makes only the rigid share of it a velocity.
+/// m/s: the largest correction that an error of position may demand from a row. A compliant row gives way, and turns only its rigid share
+/// of the demand into velocity.
 /// @param mobility  of the row, softness included
 template <int kDimension>
 float AttachmentRows<kDimension>::most_of_error(float mobility) const {
@@ -391,7 +393,7 @@ float AttachmentRows<kDimension>::most_of_error(float mobility) const {
   return rigid > 0 ? most * mobility / rigid : most;
 }
 
-/// The places of a side have the same particles in the same order.
+/// All places of a side have the same particles in the same order.
 template <int kDimension>
 void AttachmentRows<kDimension>::begin_places() {
   const auto count = static_cast<Eigen::Index>(rows_.size());
@@ -416,7 +418,7 @@ void AttachmentRows<kDimension>::begin_places() {
   inverse_of_places_ = inverse_of_few<kDimension + 1>(mobilities);
 }
 
-/// Of the rigid body's mass and inertia, and of its rows'. @pre it has both
+/// Sums up the rigid body's mass and inertia, and those of its rows. @pre it has both
 template <int kDimension>
 void AttachmentRows<kDimension>::begin_weld_to_rigid() {
   using Of = AttachedRigid<kDimension>;
@@ -434,8 +436,8 @@ void AttachmentRows<kDimension>::begin_weld_to_rigid() {
   inverse_inertia_ = inverse_inertia_.inverse().eval();
 }
 
-/// A rope may be as long as it is where its ends will have gone round each other, not where they would go straight on: so it takes no
-/// energy from what swings.
+/// A rope's length is limited at the point that its ends reach by circling each other, not by moving straight on. So the rope takes no
+/// energy from a body that swings.
 template <int kDimension>
 void AttachmentRows<kDimension>::begin_rope(Row& row, const Vector& apart) {
   const float h = step_, distance = apart.norm(), length = length_;
@@ -548,7 +550,7 @@ float AttachmentRows<kDimension>::solve_places() {
   return largest;
 }
 
-/// All rows at once: their velocities first, then the rigid body's change, then their impulses.
+/// Solves all rows at once: first their velocities, then the rigid body's change, then their impulses.
 template <int kDimension>
 float AttachmentRows<kDimension>::solve_weld_to_rigid() {
   using Of = AttachedRigid<kDimension>;
@@ -577,7 +579,7 @@ float AttachmentRows<kDimension>::solve_weld_to_rigid() {
     a_.add(row.a, sides_.a, sides_.a.velocities, change);
     solve_push(row);
   }
-  // What the rows were given it loses, to the last bit that a float has.
+  // The rigid body loses exactly what the rows have been given, as far as floats allow.
   Of::change(rigid, -rigid.inverse_mass * given, spin);
   return largest;
 }
@@ -634,7 +636,8 @@ float AttachmentRows<kDimension>::iterate() {
   return largest;
 }
 
-/// Attachments that contradict each other push further and further. What contacts and other attachments push stays.
+/// Limits pushes, as attachments that contradict each other would push further and further. Pushes of contacts and of other attachments
+/// remain.
 template <int kDimension>
 void AttachmentRows<kDimension>::limit_pushes(const Side& side, const AttachedBody<kDimension>& body) const {
   if (!pushes_) return;

@@ -1,25 +1,27 @@
 #pragma once
-// The constraints of one attachment: places of a soft body that are held at places of another one, or of a frame.
+// The constraints of one attachment. They hold places of a soft body at places of another soft body, or of a frame.
 //
-// A weld to a frame (a rigid body, or what the program moves) holds each particle of the patch at its place in the frame. Two soft bodies
-// have places in common: points of the space around both patches, of which each patch holds a share. The place p of a patch of particles
-// with masses m, positions x, mass M and centre c moves with the mean deformation of the patch:
+// A weld to a frame (a rigid body, or a frame that the program moves) holds each particle of the patch at its place in the frame. Two soft
+// bodies have common places: points of the space around both patches, to which each patch contributes a share. The place p of a patch of
+// particles with masses m, positions x, mass M and centre c moves with the mean deformation of the patch:
 //
 //     p = sum w x    w = m/M (1 + r' S^-1 (p - c))    r = x - c    S = sum m/M r r'
 //
-// so an impulse at p gives w/m of it to each particle, and momentum and angular momentum are those of an impulse at p. Places at
-// c + L t, with L L' = S and t the corners of a regular simplex with t.t' = -1, do not feel each other's impulses: four of them (in two
-// dimensions three) are a weld, two on its axis (one) a hinge, the middle of the patch is an end of a rope.
+// so an impulse at p changes each particle's velocity by w/m of it, and the momentum and angular momentum are those of an
+// impulse at p. Places at c + L t, with L L' = S and t the corners of a regular simplex with t.t' = -1, do not react to each other's
+// impulses. Four of them (in two dimensions three) make a weld, two on its axis (one) a hinge; the middle of the patch is an end of a rope.
 //
-// A weld to a rigid body that moves is solved at once, not row by row: each row gives u = v_particle - v_rigid and takes an impulse of
-// -D (u - dv - dw x r), D the inverse of its mobility, and what all of them do to the rigid body is its dv and dw: six equations.
+// All rows of a weld to a rigid body that moves are solved at once: each row measures u = v_particle - v_rigid and applies an impulse of -D
+// (u - dv - dw x r), where D is the inverse of its mobility and dv, dw are the change that all rows together give the rigid body: six
+// equations.
 //
-// Rows of places, too, are solved at once where no rigid body moves: impulses at places give velocities at places by a matrix of one number for
-// each two of them, the sum of w_k w_l / m, the same along each axis.
+// Rows of places are also solved at once if no rigid body moves: a matrix gives the velocities at places by the impulses at places. It has
+// one number for each pair of places, the sum of w_k w_l / m, the same along each axis.
 //
-// Rows of ropes, and of hinges to rigid bodies, are solved one after the other, together with contacts: sequential impulses [Cat05]. They start with no impulse: what hangs together
-// in a soft body takes some substeps to feel a load anyway, and the impulses of the last substep would add energy to what turns. What
-// is left of an error of position goes by pushes, which last one substep and give no energy, as contacts' depth does.
+// Rows of ropes, and of hinges to rigid bodies, are solved one after the other, together with contacts: sequential impulses [Cat05]. They
+// use no warm start: a soft body takes some substeps to feel a load anyway, and the impulses of the last substep would add energy to bodies
+// that turn. Pushes, which last one substep and add no energy, remove what is left of an error of position, as they do with the depth of
+// contacts.
 
 #include <Eigen/Core>
 #include <cstdint>
@@ -40,10 +42,10 @@ struct AttachedBody {
   std::span<Vector> pushes;               ///< m/s, for this substep only
   std::span<const float> inverse_masses;  ///< 1/kg; 0 of a body that sleeps
   float spacing = 0;                      ///< metres, of a cell
-  bool asleep = false;                    ///< nothing moves it
+  bool asleep = false;                    ///< an attachment does not move it
 };
 
-/// Where what is not soft is at the substep's beginning and, if nothing but the program moves it, at its end.
+/// Where a frame is at the substep's beginning and, if only the program moves it, at its end.
 template <int kDimension>
 struct AttachmentFrame {
   using Vector = Eigen::Vector<float, kDimension>;
@@ -54,13 +56,13 @@ struct AttachmentFrame {
   Vector to_world(const Vector& own) const { return position + rotation * own; }
   Vector to_world_at_end(const Vector& own) const { return end_position + end_rotation * own; }
   Vector to_own(const Vector& world) const { return rotation.transpose() * (world - position); }
-  /// m/s: of a place in it, in a substep of `step` seconds.
+  /// Velocity of a place of the frame, m/s, in a substep of `step` seconds.
   Vector velocity_at(const Vector& own, float step) const {
     return (to_world_at_end(own) - to_world(own)) / step;
   }
 };
 
-/// A particle of a body whose velocity an attachment decides: what presses on it meets what holds it.
+/// A particle of a body whose velocity an attachment determines: a rigid body that presses on the particle feels what holds it.
 template <int kDimension>
 struct HeldParticle {
   std::uint32_t body = 0, particle = 0;
@@ -80,7 +82,7 @@ struct PatchParticles {
 template <int kDimension>
 class AttachmentRecords;
 
-/// Constraints between a patch of a body, called a, and a patch of another one or a frame, called b.
+/// Constraints between a patch of a body, called a, and either a patch of another body or a frame, called b.
 template <int kDimension>
 class AttachmentRows {
  public:
@@ -88,36 +90,36 @@ class AttachmentRows {
   using Matrix = Eigen::Matrix<float, kDimension, kDimension>;
   using Rigid = typename AttachedRigid<kDimension>::Rigid;
 
-  /// Of two soft bodies.
-  /// @throws std::invalid_argument  a patch is too small, or flat, for what is asked of it.
+  /// Attaches two soft bodies.
+  /// @throws std::invalid_argument  a patch is too small, or too flat, for this kind of attachment.
   AttachmentRows(const AttachmentSettings<kDimension>& settings, const PatchParticles<kDimension>& a,
                  const PatchParticles<kDimension>& b);
-  /// @throws as above.
+  /// Attaches a soft body to a frame. @throws as above.
   AttachmentRows(const AttachmentSettings<kDimension>& settings, const PatchParticles<kDimension>& a,
                  const AttachmentFrame<kDimension>& frame);
 
   /// The particles of a patch. @param of_b  of the second body's
   std::span<const std::uint32_t> particles(bool of_b) const { return of_b ? b_.particle : a_.particle; }
-  /// A body has become another one in which the particles of its patch have other numbers. Nothing else of the attachment changes.
+  /// Tells that a body has become another one, in which the patch's particles have other numbers. Nothing else of the attachment changes.
   /// @param numbers  one for each of particles()
   void renumber(bool of_b, std::vector<std::uint32_t> numbers);
 
-  /// The two sides in a substep; b is null where rows are of a frame, rigid where nothing moves it but the program.
+  /// The two sides in a substep. b is null if b is a frame; rigid is null if only the program moves the frame.
   struct Sides {
     AttachedBody<kDimension> a;
     const AttachedBody<kDimension>* b = nullptr;
     const AttachmentFrame<kDimension>* frame = nullptr;
     Rigid* rigid = nullptr;
   };
-  /// Appends the particles of a that a weld without compliance holds at what impulses do not move; of other attachments none.
+  /// Appends the particles of a that a weld without compliance holds to a frame that impulses do not move; for other attachments none.
   /// @param rigid  null: only the program moves the frame
   void append_held(std::uint32_t a, const AttachmentFrame<kDimension>& frame, const Rigid* rigid, float step,
                    std::vector<HeldParticle<kDimension>>& held) const;
-  /// Begins a substep. The sides stay where they are until finish().
+  /// Begins a substep. The sides must stay in place until finish().
   void begin(const Sides& sides, float step);
-  /// Whether one iteration finds what more would find, as long as nobody else changes the sides.
+  /// Whether one iteration gives the final result, as long as nothing else changes the sides.
   bool is_direct() const { return is_direct_; }
-  /// One iteration. @return  the largest error of velocity that a row had, squared (m/s)^2
+  /// One iteration. @return  the largest velocity error of a row, squared (m/s)^2
   float iterate();
   /// Behind the last one.
   void finish();
@@ -126,17 +128,17 @@ class AttachmentRows {
   void take_back_spin();
   bool gives_way() const { return softness_ > 0; }
 
-  /// Whether the last iteration of the last substep would have passed the break force.
+  /// Whether the impulse after the last iteration of the last substep exceeds the break force.
   bool broke() const { return broke_; }
   const AttachmentState<kDimension>& state() const { return state_; }
-  /// @param a, b  where the particles of the bodies are  @param frame  of what is not soft, where b is empty
+  /// @param a, b  positions of the bodies' particles  @param frame  used if b is empty
   AttachmentEnds<kDimension> ends(std::span<const Vector> a, std::span<const Vector> b,
                                   const AttachmentFrame<kDimension>& frame) const;
 
  private:
   friend class AttachmentRecords<kDimension>;
 
-  /// Particles and their shares in a place, which sum to 1.
+  /// A range of particles and of their shares in a place, which sum to 1.
   struct Place {
     std::uint32_t first = 0, count = 0;
   };
@@ -144,9 +146,9 @@ class AttachmentRows {
     std::vector<std::uint32_t> particle;
     std::vector<float> share;
     std::vector<Vector> pushed =
-        {};  // m/s, of this substep: what each particle was given by these rows, by number_of()
+        {};  // m/s, in this substep: what these rows gave each particle, by number_of()
 
-    /// Of the particle of an entry among those that differ: places of several particles all have the same, in the same order.
+    /// The number of an entry's particle without repetitions: places of several particles all have the same particles in the same order.
     static std::size_t number_of(const Place& place, std::uint32_t entry) {
       return place.count == 1 ? entry : entry - place.first;
     }
@@ -157,26 +159,26 @@ class AttachmentRows {
              const Vector& impulse) const;
     float mobility(const Place& place, std::span<const float> inverse_masses) const;
     Place append(std::uint32_t particle, float share);
-    /// The place `point` of a patch.
+    /// Appends the place `point` of a patch.
     Place append(const PatchParticles<kDimension>& patch, const Vector& point);
     Place append_middle(const PatchParticles<kDimension>& patch);
   };
   struct Row {
     Place a, b;
     Vector own = Vector::Zero();      // in the frame
-    float share = 1;                  // of the patch's middle, against those of other rows
+    float share = 1;                  // weight among rows in the patch's middle
     Vector impulse = Vector::Zero();  // kg m/s, on a
 
     // Of this substep:
     Vector point = Vector::Zero();                 // metres: b's place
-    Vector carried = Vector::Zero();               // m/s: b's velocity, where only the program moves it
+    Vector carried = Vector::Zero();               // m/s: b's velocity, if only the program moves b
     Vector error = Vector::Zero();                 // m/s: the error of position, over the step
     Matrix inverse_mobility = Matrix::Identity();  // kg, softness included
     float push_mobility = 0;                       // 1/kg
-    // Of ropes:
+    // For ropes:
     Vector along = Vector::Zero();  // unit length, from b to a
-    float most = 0;                 // m/s, along it, of a against b
-    float mobility = 0;   // 1/kg, softness included; also of rows of a weld to a rigid body, its own left out
+    float most = 0;                 // m/s, upper limit of the velocity of a against b along it
+    float mobility = 0;   // 1/kg, with softness; for a weld to a rigid body: without the rigid body's own
     float push_most = 0;  // m/s
     float push = 0;       // kg m/s
   };
@@ -186,7 +188,7 @@ class AttachmentRows {
   void add_places_in_common(const PatchParticles<kDimension>& a, const PatchParticles<kDimension>& b);
   void add_hinge(const PatchParticles<kDimension>& a, const PatchParticles<kDimension>* b,
                  const AttachmentFrame<kDimension>* frame);
-  /// @return  metres, from where b holds it to a's place
+  /// @return  metres, from the place where b holds it to a's place
   Vector begin_row(Row& row);
   void begin_weld_to_rigid();
   void begin_rope(Row& row, const Vector& apart);
@@ -220,10 +222,10 @@ class AttachmentRows {
   bool is_direct_ = false;
   bool with_rigid_at_once_ = false;
   bool places_at_once_ = false;
-  // Of places: the inverse of their mobilities, with softness and without. kg
+  // For places: the inverse of their mobilities, with softness and without. kg
   using Places = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, 0, kDimension + 1, kDimension + 1>;
   Places inverse_of_places_, inverse_of_pushes_;
-  // Of a weld to a rigid body that moves: the sums of D and D r, and the inverse of what is left of the equations for its spin.
+  // For a weld to a rigid body that moves: the sums of D and D r, and the inverse of the matrix that remains for its spin.
   float sum_ = 0;
   Vector sum_of_arms_ = Vector::Zero();
   Eigen::Matrix<float, AttachedRigid<kDimension>::kAxes, AttachedRigid<kDimension>::kAxes> inverse_inertia_;

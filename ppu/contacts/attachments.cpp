@@ -55,7 +55,7 @@ void Attachments<kDimension>::begin(std::span<const AttachedBody<kDimension>> bo
   find_those_alone(bodies.size(), rigids.size());
 }
 
-/// Nobody else changes the sides of an attachment that has them for itself while attachments are solved.
+/// Finds attachments that share no side with another one: while attachments are solved, nothing else changes their sides.
 template <int kDimension>
 void Attachments<kDimension>::find_those_alone(std::size_t bodies, std::size_t rigids) {
   attached_to_.assign(bodies + rigids, 0);

@@ -1,5 +1,5 @@
 #pragma once
-// The attachments that are solved in a substep, between contacts.
+// The attachments of a substep, which are solved together with contacts.
 
 #include <cstdint>
 #include <span>
@@ -18,19 +18,19 @@ struct AttachmentInStep {
   static constexpr std::uint32_t kNone = ~0u;
   AttachmentRows<kDimension>* rows = nullptr;
   std::uint32_t a = 0, b = kNone;       ///< soft bodies; b kNone: a frame
-  std::uint32_t rigid = kNone;          ///< of a frame: kNone: only the program moves it
+  std::uint32_t rigid = kNone;          ///< the frame's rigid body; kNone: only the program moves the frame
   AttachmentFrame<kDimension> frame{};  ///< of a frame
-  bool touch = false;                   ///< its two soft bodies touch each other
+  bool touch = false;                   ///< the two soft bodies also collide with each other
 };
 
 /// The sides of an attachment, by their numbers.
 struct AttachmentSides {
   static constexpr std::uint32_t kNone = ~0u;
   std::uint32_t a = 0, b = kNone;  ///< soft bodies
-  std::uint32_t rigid = kNone;     ///< one that impulses move
+  std::uint32_t rigid = kNone;     ///< a rigid body that impulses move
 };
 
-/// Solves attachments in the order begin(), iterate() once or more often, finish(). Or a kernel does, between begin() and read() of each.
+/// Solves attachments: call begin(), iterate() once or more often, finish(). Or a kernel solves them, between begin() and read() of each.
 template <int kDimension>
 class AttachmentSolver {
  public:
@@ -38,25 +38,25 @@ class AttachmentSolver {
 
   virtual ~AttachmentSolver() = default;
   virtual bool empty() const = 0;
-  /// Whether two soft bodies do not touch each other because they are attached. @pre a < b
+  /// Whether two soft bodies do not collide because they are attached. @pre a < b
   virtual bool parts(std::uint32_t a, std::uint32_t b) const = 0;
-  /// Appends the particles that are held where impulses move nothing. Before begin().
+  /// Appends the particles that are held by frames that impulses do not move. Call it before begin().
   virtual void append_held(std::span<const Rigid> rigids, float step,
                            std::vector<HeldParticle<kDimension>>& held) = 0;
-  /// @param bodies, rigids  stay where they are until finish()
+  /// @param bodies, rigids  must stay in place until finish()
   virtual void begin(std::span<const AttachedBody<kDimension>> bodies, std::span<Rigid> rigids,
                      float step) = 0;
-  /// Up to as many iterations; fewer when nothing changes any more.
+  /// Iterates at most this often; stops when nothing changes any more.
   virtual void iterate(int iterations) = 0;
   virtual void finish() = 0;
 
   // For the kernel `attach`, after begin().
 
-  virtual std::size_t solved() const = 0;  ///< how many there are to solve
+  virtual std::size_t solved() const = 0;  ///< how many attachments there are to solve
   virtual AttachmentSides sides(std::size_t attachment) const = 0;
-  /// Appends its records. @return false: the kernel cannot solve it, and nothing is appended.
+  /// Appends the attachment's records. @return false: the kernel cannot solve it, and nothing is appended.
   virtual bool write(std::size_t attachment, AttachUnit& unit) const = 0;
-  /// What the kernel has made of these. In place of finish().
+  /// Reads back the kernel's results. Call it instead of finish().
   virtual void read(std::size_t attachment, const spu::AttachLink& link,
                     std::span<const spu::AttachPoint> points, std::span<const spu::AttachRow> rows) = 0;
   /// Behind read() of all, when velocities are as the kernel has left them.
@@ -69,7 +69,7 @@ class Attachments final : public AttachmentSolver<kDimension> {
  public:
   using typename AttachmentSolver<kDimension>::Rigid;
 
-  /// Empty, with the room that it has.
+  /// Removes all attachments and keeps the allocated room.
   void clear();
   void add(const AttachmentInStep<kDimension>& attachment);
 
@@ -97,14 +97,14 @@ class Attachments final : public AttachmentSolver<kDimension> {
   struct Solved {
     AttachmentRows<kDimension>* rows = nullptr;
     AttachmentSides sides;
-    bool once = false;  // in a call of iterate(): more iterations find nothing
+    bool once = false;  // in a call of iterate(): further iterations would change nothing
   };
   void find_those_alone(std::size_t bodies, std::size_t rigids);
 
   std::vector<AttachmentInStep<kDimension>> all_;
-  std::vector<Solved> solved_;  // of them: those with a side that may move
+  std::vector<Solved> solved_;  // the attachments with a side that may move
   std::vector<std::pair<std::uint32_t, std::uint32_t>> parted_;
-  std::vector<std::uint32_t> attached_to_;  // of each body, then of each rigid one: how many of solved_ are
+  std::vector<std::uint32_t> attached_to_;  // soft bodies, then rigid ones: how many of solved_ each has
 };
 
 extern template class Attachments<2>;

@@ -16,9 +16,9 @@ using Eigen::Vector3f;
 
 constexpr int kBounceIterations =
     40;  // over the contacts of one substep that bounce: few bodies bounce at a time
-// Bodies that gravity makes this many times as fast in one substep rest on each other, they do not hit.
+// Two bodies rest on each other and do not hit if gravity makes them as fast within this many substeps.
 constexpr double kRestingSteps = 2;
-// In cells: what is no farther apart when a body first touches something touches, too.
+// In cells: when a body first touches something, contacts up to this gap count as touching, too.
 constexpr float kTouches = 0.02f;
 
 void insert(std::vector<std::uint32_t>& ascending, std::uint32_t number) {
@@ -33,7 +33,8 @@ std::size_t index_in(std::span<const std::uint32_t> ascending, std::uint32_t num
   return static_cast<std::size_t>(at - ascending.begin());
 }
 
-/// Of the substep, until a velocity changes: when the two surfaces of a contact touch. What is sharp lets a body go on, but only so far.
+/// The share of the substep until a velocity changes: until the contact's surfaces touch. A sharp contact acts at once: it only limits how
+/// far the body goes on.
 float share_until_touch(const BounceContact& contact, float step) {
   return contact.is_sharp() ? 0.0f : std::min(contact.gap / (step * contact.approach), 1.0f);
 }
@@ -67,7 +68,7 @@ void Bounces::Whole::push(const Vector3d& point, const Vector3d& impulse) {
 
 double Bounces::Part::share_of(const Eigen::Vector3i& particle) const {
   if (thickness == kEverything) return 1;
-  // A cell's high corners are one off its low one.
+  // A cell's high corners are one step beyond its low corner.
   const Vector3f at = particle.cast<float>();
   const Vector3f off = (cells.low - at).cwiseMax(at - cells.high - Vector3f::Ones()).cwiseMax(0.0f);
   return std::clamp(2 - double{off.norm()} / double{thickness}, 0.0, 1.0);
@@ -100,7 +101,7 @@ Bounces::Whole Bounces::whole_of(const ContactBody& body, const Part& part, doub
     spin += own * r.cross(body.velocities[p].cast<double>());
     inertia += own * (r.squaredNorm() * Matrix3d::Identity() - r * r.transpose());
   }
-  // A body that is pressed to a line cannot turn about it.
+  // A body that is pressed to a line cannot turn about the line.
   inertia.diagonal().array() += 1e-9 * inertia.trace();
   const Matrix3d inverse = inertia.inverse();
   whole.spin = inverse * spin;
@@ -138,8 +139,8 @@ std::optional<double> Bounces::target_of(const BounceContact& contact, const Bou
     const double least = -(double{contact.gap} + double{contact.room}) / step;
     return along < least ? std::optional(least) : std::nullopt;
   }
-  // Velocities hold the gravity of the whole substep, but it acts before and after the bounce: a velocity of
-  // a substep is exact in its middle.
+  // Velocities include the gravity of the whole substep, but gravity acts before and after the bounce: the velocity of a substep is exact
+  // in its middle.
   const auto falls = [](const Whole& whole) { return whole.inverse_mass > 0 ? 1.0 : 0.0; };
   const double fall =
       (falls(*bounce.a) - falls(*bounce.b)) * step * bounce.normal.dot(settings.gravity.cast<double>());
@@ -148,7 +149,7 @@ std::optional<double> Bounces::target_of(const BounceContact& contact, const Bou
   return -double{contact.restitution} * hits + fall * (0.5 - share);
 }
 
-/// Of changed_: all of what bounces, and of others what is near sharp things.
+/// For changed_: all of a body that bounces; of other bodies the parts near sharp edges.
 void Bounces::choose_parts(std::span<const ContactBody> bodies) {
   constexpr float kLeastThickness = 2;  // cells
   parts_.assign(changed_.size(), Part());
@@ -164,7 +165,7 @@ void Bounces::choose_parts(std::span<const ContactBody> bodies) {
   }
 }
 
-/// What bounces is not stopped by what is sharp.
+/// Sharp edges do not stop a body that bounces.
 void Bounces::choose_contacts() {
   chosen_.clear(), changed_.clear(), rigids_.clear();
   const auto choose = [&](std::uint32_t i) {
@@ -183,7 +184,7 @@ void Bounces::choose_contacts() {
     if (contacts_[i].is_sharp() && !std::ranges::binary_search(bouncing_, contacts_[i].a)) choose(i);
 }
 
-/// Which contacts may bounce, which bodies they have, and when these first touch.
+/// Chooses the contacts that may bounce, their bodies, and the moments when these first touch.
 void Bounces::choose(std::span<const ContactBody> bodies, std::span<const ContactRigid> rigids,
                      const BounceSettings& settings, float step) {
   choose_contacts();

@@ -1,11 +1,10 @@
 #pragma once
-// Restitution: a body that hits something fast enough leaves it as a rigid body would. One that something sharp
-// would crush is stopped as a rigid body would be.
+// Restitution: a body that hits something fast enough leaves it as a rigid body would. A body that a sharp edge would crush is stopped as a
+// rigid body would be.
 //
-// Shape matching carries an impulse from the surface to the rest of a body one substep later, so a restitution of the
-// surface alone is lost inside the body. Bounces therefore change the rigid motion of whole bodies: six numbers
-// each. They come before the other contacts, which then find the bodies on their way back. A soft body that sleeps is a
-// wall in the substep in which it is hit.
+// Shape matching carries an impulse from the surface to the rest of a body one substep later, so a restitution of the surface alone is lost
+// inside the body. Bounces therefore change the rigid motion of whole bodies: six numbers each. They are solved before the other contacts,
+// which then find the bodies already on their way back. A sleeping soft body acts as a wall in the substep in which it is hit.
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -22,30 +21,30 @@
 namespace softcell::ppu {
 
 struct BounceSettings {
-  float least_speed = 0.2f;  ///< m/s: what hits more slowly does not bounce, so that it comes to rest
-  /// m/s^2, of bodies and of rigid ones that move; velocities hold it already.
+  float least_speed = 0.2f;  ///< m/s: slower impacts do not bounce, so that bodies come to rest
+  /// m/s^2, of soft bodies and of rigid ones that move; their velocities already include it.
   Eigen::Vector3f gravity{0, 0, 0};
-  /// What two restitutions are together: their product, Bullet's way, or the larger one, Box2D's.
+  /// How two restitutions are combined: by their product, as in Bullet, or by the larger one, as in Box2D.
   enum class Mix { kProduct, kLarger } mix = Mix::kProduct;
 
   float restitution_of(float a, float b) const { return mix == Mix::kProduct ? a * b : std::max(a, b); }
-  /// Whether a body of that restitution may bounce off something.
+  /// Whether a body with that restitution may bounce off anything.
   bool may_bounce(float restitution) const { return mix == Mix::kLarger || restitution > 0; }
 };
 
-/// A contact that bounces if it is fast enough, or one with something sharp, against which a body goes no farther than it has room.
+/// A contact that bounces if it is fast enough; or a sharp contact, which limits how far a body moves on.
 struct BounceContact {
   static constexpr float kNoLimit = SoftContact::kNoLimit;
   static constexpr std::uint32_t kNobody = ~0u;
   std::uint32_t a = 0, b = kNobody;  ///< bodies; b kNobody: `rigid`
   std::uint32_t rigid = 0;
-  Eigen::Vector3f point{0, 0, 0};   ///< metres, of a at the substep's end if nothing touched
+  Eigen::Vector3f point{0, 0, 0};   ///< metres: a's point at the substep's end if nothing touched
   Eigen::Vector3f normal{0, 1, 0};  ///< from the other one to a
   float gap = 0;                    ///< metres at the substep's beginning, not negative
   float approach = 0;               ///< m/s, of the two surfaces against each other
-  float restitution = 0;            ///< 0..1; of what is sharp without effect
+  float restitution = 0;            ///< 0..1; ignored for a sharp contact
   float room = kNoLimit;            ///< metres, SoftContact::room
-  std::uint32_t cell = 0;           ///< of what is sharp: of a
+  std::uint32_t cell = 0;           ///< of a, for a sharp contact
   float friction = 0;
 
   bool is_sharp() const { return room < kNoLimit; }
@@ -58,20 +57,20 @@ class Bounces {
   void add(const BounceContact& contact);
   bool empty() const { return contacts_.empty(); }
 
-  /// Changes the velocities of bodies that bounce, and their pushes: in this substep a body goes as far as it
-  /// touches with the velocity that it had, and the rest with the one that it gets. Momentum, angular momentum
-  /// and, but for what gravity does within the substep, energy of a restitution of 1 are kept.
+  /// Changes the velocities of bodies that bounce, and their pushes: in this substep a body moves with its old velocity until it touches,
+  /// and with its new velocity afterwards. This keeps momentum, angular momentum and, if the restitution is 1, energy, except for what
+  /// gravity does within the substep.
   void solve(std::span<ContactBody> bodies, std::span<ContactRigid> rigids, const BounceSettings& settings,
              float step);
 
-  /// Calls work(contact, impulse) for what has changed bodies in the last solve(): kg m/s along the normal, above 0.
+  /// Calls work(contact, impulse) for each impulse on a body in the last solve(): kg m/s along the normal, above 0.
   template <typename Work>
   void for_each_impulse(const Work& work) const {
     for (const Bounce& bounce : bounces_)
       if (bounce.impulse > 0) work(contacts_[bounce.contact], static_cast<float>(bounce.impulse));
   }
 
-  /// Calls work(rigid, point, impulse) for what rigid bodies got in the last solve(): kg m/s, at a place in the world.
+  /// Calls work(rigid, point, impulse) for each impulse on a rigid body in the last solve(): kg m/s, at a place in the world.
   template <typename Work>
   void for_each_impulse_on_rigid(const Work& work) const {
     for (const Bounce& bounce : bounces_)
@@ -84,15 +83,16 @@ class Bounces {
   std::span<const std::uint32_t> changed() const { return changed_; }
 
  private:
-  /// Of a body, what moves as if it were rigid: all of it if it bounces. What is sharp stops what is near: ends of a long body fall on.
+  /// The part of a body that moves as if it were rigid. If the body bounces, this is all of it. A sharp edge stops only what is near: the
+  /// ends of a long body fall on.
   struct Part {
     static constexpr float kEverything = std::numeric_limits<float>::infinity();
-    Bounds<3> cells{};  ///< around the low corners of those that meet something sharp, by Lattice::cells
-    float thickness = kEverything;  ///< cells: so far from these all moves, and twice as far nothing does
-    /// 0..1: how much of a particle's mass counts, and of the change of motion it gets.
+    Bounds<3> cells{};  ///< around the low corners of cells that meet something sharp, by Lattice::cells
+    float thickness = kEverything;  ///< cells: all moves as far from these, and nothing twice as far
+    /// 0..1: the share of a particle's mass that counts, and of the part's change of motion that it gets.
     double share_of(const Eigen::Vector3i& particle) const;
   };
-  /// A part of a body as if it were rigid, where it first touches.
+  /// A part of a body treated as rigid, at the moment of its first touch.
   struct Whole {
     Eigen::Vector3d centre{0, 0, 0};
     Eigen::Vector3d velocity{0, 0, 0}, spin{0, 0, 0};
@@ -111,7 +111,7 @@ class Bounces {
     double mobility(const Eigen::Vector3d& point, const Eigen::Vector3d& direction) const;
     void push(const Eigen::Vector3d& point, const Eigen::Vector3d& impulse);
   };
-  /// A contact on its way to be solved.
+  /// A contact that is being solved.
   struct Bounce {
     std::uint32_t contact = 0;
     Whole *a = nullptr, *b = nullptr;
@@ -122,8 +122,8 @@ class Bounces {
 
   static Whole whole_of(const ContactBody& body, const Part& part, double time);
   static Whole whole_of(const ContactRigid& rigid);
-  /// What the velocity of its two sides along its normal shall be at least, m/s; none: it is so already.
-  /// @param share  of the substep, until it touches
+  /// The least velocity of a against b along the normal after the bounce, m/s; none: the contact needs no change.
+  /// @param share  of the substep, until they touch
   static std::optional<double> target_of(const BounceContact& contact, const Bounce& bounce, double share,
                                          const BounceSettings& settings, double step);
   void choose_contacts();
@@ -135,7 +135,7 @@ class Bounces {
 
   std::vector<BounceContact> contacts_;
   std::vector<std::uint32_t> chosen_;            // of contacts_
-  std::vector<std::uint32_t> bouncing_;          // bodies that do not meet something sharp only
+  std::vector<std::uint32_t> bouncing_;          // bodies with at least one contact that is not sharp
   std::vector<std::uint32_t> changed_, rigids_;  // that bounce, ascending
   std::vector<float> share_;                     // of each of changed_: of the substep until it touches
   std::vector<Part> parts_;                      // likewise

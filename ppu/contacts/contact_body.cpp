@@ -12,7 +12,7 @@
 namespace softcell::ppu {
 namespace {
 
-/// Of each particle: the first cell that has it, and which corner it is.
+/// For each particle: the first cell that has it, and the corner as xi.
 std::vector<std::pair<std::uint32_t, Eigen::Vector3f>> homes_of_particles(const Lattice<3>& lattice) {
   std::vector<std::pair<std::uint32_t, Eigen::Vector3f>> homes(lattice.particles.size());
   for (std::uint32_t cell = static_cast<std::uint32_t>(lattice.cells.size()); cell-- > 0;)
@@ -62,7 +62,7 @@ ContactModel::ContactModel(const FlatLayer& layer)
   inner_places = find_inner_places(layer);
 }
 
-/// Nothing holds on to a particle without a mass, so that any number will do for it.
+/// Impulses never act on a particle without a mass, so any number will do for it.
 void ContactModel::weigh() {
   double sum = 0;
   for (const float mass : masses_) {
@@ -102,7 +102,7 @@ std::optional<std::uint32_t> ContactModel::cell_at(const Eigen::Vector3f& place)
   return margin ? std::optional(static_cast<std::uint32_t>(*margin + own_count_)) : std::nullopt;
 }
 
-/// In each cell points of the surface come first.
+/// In each cell, points of the surface come before particles.
 void ContactModel::place_touch_points() {
   const auto homes = homes_of_particles(lattice());
   first_of_cell.assign(lattice().cells.size() + 1, 0);
@@ -133,7 +133,7 @@ Anchor anchor_in_cell(const Lattice<3>& lattice, std::uint32_t cell, const Eigen
   return anchor;
 }
 
-/// Any rotation proves it; this one is made of the directions into which the cells' edges point on average.
+/// Uses the rotation to which the cells' edges point on average. Any rotation would prove it.
 bool may_be_folded(const ContactBody& body, float most) {
   using Eigen::Vector3f;
   const Lattice<3>& lattice = body.lattice();
@@ -167,8 +167,8 @@ void stiffen(ContactBody& body, std::uint32_t cell, float share) {
   const std::span<const float> masses = body.model->masses();
   float mass = 0;
   for (const std::uint32_t k : corners) mass += masses[k];
-  // Lengths in cells and masses as shares: the same numbers at every scale. From the first corner: far from the origin, and of what is fast,
-  // sums would lose digits.
+  // Lengths in cells and masses as shares give the same numbers at every scale. Places and velocities are taken relative to the first corner:
+  // sums of large numbers would lose digits.
   const Vector3f first = body.positions[corners[0]], carried = body.velocities[corners[0]];
   const auto from_first = [&](std::uint32_t k) -> Vector3f {
     return (body.positions[k] - first) / body.spacing();
@@ -186,13 +186,13 @@ void stiffen(ContactBody& body, std::uint32_t cell, float share) {
     spin += masses[k] / mass * r.cross(body.velocities[k] - carried);
     inertia += masses[k] / mass * (r.squaredNorm() * Eigen::Matrix3f::Identity() - r * r.transpose());
   }
-  // A cell that is pressed to a line cannot turn about it: a little is added to its inertia. What that takes of the turn is given
-  // back, so that the spin that is left out is of second order.
+  // A cell that is pressed to a line cannot turn about it, so a little is added to its inertia. The turn that this takes away is given
+  // back, so that the missing spin is of second order.
   constexpr float kLittle = 0x1.0p-13f;
   inertia.diagonal().array() += kLittle;
   const Eigen::Matrix3f inverse = inertia.inverse();
   const Vector3f omega = inverse * (spin + kLittle * (inverse * spin));
-  if (!omega.allFinite()) return;  // torn over 10^6 of its size: the determinant overflows
+  if (!omega.allFinite()) return;  // stretched to over 10^6 of its size: the determinant overflows
   for (const std::uint32_t k : corners) {
     body.velocities[k] += share * (velocity + omega.cross(arm(k)) - (body.velocities[k] - carried));
   }

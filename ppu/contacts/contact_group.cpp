@@ -11,8 +11,7 @@ namespace {
 
 using Eigen::Vector3f;
 
-// A depth of up to kSlop cells stays; of what is deeper, kPushShare goes in a substep, and no more than
-// kMostPush cells.
+// A penetration depth of up to kSlop cells remains; of the rest, a substep removes kPushShare, and no more than kMostPush cells.
 constexpr float kSlop = 0.01f, kPushShare = 0.1f, kMostPush = 0.02f;
 
 float mobility(const SoftContact& contact, const ContactSides& sides, const Vector3f& direction) {
@@ -65,7 +64,7 @@ void solve_friction(SoftContact& contact, const ContactSides& sides) {
   contact.friction_impulse = wanted;
 }
 
-/// m/s along the normal, out of each other; 0: they are not deep enough.
+/// Velocity that moves the two out of each other, m/s along the normal; 0: they are not deep enough.
 float push_velocity(const SoftContact& contact, float spacing, float step) {
   const float excess = contact.depth - kSlop * spacing;
   return excess > 0 ? std::min(kPushShare * excess, kMostPush * spacing) / step : 0.0f;
@@ -92,7 +91,7 @@ spu::SolveAnchor as_kernels_solve_it(const Anchor& anchor, std::span<const float
   return result;
 }
 
-/// Soft bodies only: a rigid one is moved by its engine.
+/// Moves soft bodies only: a rigid one is moved by its engine.
 void solve_push(SoftContact& contact, const ContactSides& sides, float step) {
   const float target = push_velocity(contact, sides.a->spacing(), step);
   if (target <= 0 && !contact.holds_pushes) return;
@@ -144,7 +143,8 @@ spu::SolveContact as_kernels_solve_it(const SoftContact& contact, const ContactS
   return result;
 }
 
-/// Across the normal a rigid body moves most in one direction and least in another one; friction is solved as if it moved most in all.
+/// In some directions across the normal the rigid body moves more easily than in others; friction is solved as if it moved in all
+/// directions as easily as in the easiest one.
 void meet_rigid(spu::SolveContact& solved, const SoftContact& contact, const ContactSides& sides,
                 std::uint16_t number) {
   const ContactRigid& rigid = sides.rigids[contact.rigid];
@@ -171,7 +171,7 @@ void meet_rigid(spu::SolveContact& solved, const SoftContact& contact, const Con
 
 namespace {
 
-/// What the kernel says of it. Of a body that sleeps it says nothing: no impulse changes that.
+/// The anchor as the kernel has it. The kernel gives none for a body that sleeps: no impulse changes that.
 Anchor held_by(const ContactBody& body, const spu::SolveAnchor& there, std::uint16_t cell) {
   Anchor anchor;
   anchor.cell = cell;
@@ -201,7 +201,7 @@ void hold_by_own_cells(spu::SolveContact& contact, const ContactBody& a, const C
   for (int d = 0; d < 3; ++d) contact.carried[d] = carried[d];
 }
 
-/// The kernel lets contacts alone that push with 0 m/s.
+/// Makes the push velocity positive, because the kernel ignores contacts that push with 0 m/s.
 void hold_pushes(spu::SolveContact& contact) {
   constexpr float kAsGoodAsNothing = 1e-20f;  // m/s
   contact.push_velocity = std::max(contact.push_velocity, kAsGoodAsNothing);

@@ -1,6 +1,5 @@
 #pragma once
-// Contacts that are solved together: of one soft body with rigid ones, of two with each other, or of one with
-// itself.
+// Contacts that are solved together: those of one soft body with rigid ones, of two soft bodies, or of one with itself.
 
 #include <Eigen/Core>
 #include <cstdint>
@@ -14,29 +13,29 @@
 
 namespace softcell::ppu {
 
-/// Something, called b, that a body, called a, must not enter.
+/// A contact: a body, called a, must not enter something, called b.
 struct SoftContact {
   static constexpr float kNoLimit = std::numeric_limits<float>::infinity();
 
   Anchor a;
-  Anchor b;                         ///< of soft bodies
-  std::uint32_t rigid = 0;          ///< of rigid ones: its index
+  Anchor b;                         ///< if b is a soft body
+  std::uint32_t rigid = 0;          ///< index of b if it is rigid
   Eigen::Vector3f point{0, 0, 0};   ///< metres, world
   Eigen::Vector3f normal{0, 1, 0};  ///< from b to a
   float least_velocity = 0;         ///< m/s along the normal, of a against b
-  float depth = 0;                  ///< metres in which they are already, or less than 0
+  float depth = 0;                  ///< metres of penetration, negative if they are apart
   float friction = 0;
-  /// Metres that body a may go on as a whole before something sharp crushes its cells (sharp_contacts.h); kNoLimit: it is not sharp.
+  /// Metres that body a may move on as a whole before something sharp crushes its cells (sharp_contacts.h); kNoLimit: nothing sharp.
   float room = kNoLimit;
-  bool on_held = false;       ///< with a rigid body that moves: body a's particles there are held
-  bool holds_pushes = false;  ///< a body has pushes of its own, which must not lead into the other one
+  bool on_held = false;       ///< with a moving rigid body, at held particles of body a
+  bool holds_pushes = false;  ///< a body has pushes of its own; they must not lead into the other one
 
-  // What solving changes.
+  // Results of the solver.
   float impulse = 0;  ///< kg m/s along the normal
   Eigen::Vector3f friction_impulse{0, 0, 0};
-  float push = 0;  ///< as impulse, of ContactBody::pushes
+  float push = 0;  ///< like impulse, but of ContactBody::pushes
 
-  // And needs.
+  // Constants of the solver.
   float normal_mobility = 1;  ///< 1/kg
   float push_mobility = 1;
 };
@@ -48,24 +47,24 @@ struct ContactSides {
   std::span<ContactRigid> rigids = {};
 };
 
-/// Before the first iteration.
+/// Computes the constants. Call it before the first iteration.
 void prepare(std::span<SoftContact> contacts, const ContactSides& sides);
 
-/// A contact of two soft bodies, or with a rigid one that nothing moves, for the kernel contact_solve.
-/// @pre  particles and cells have 16 bits
+/// Converts a contact for the kernel contact_solve: of two soft bodies, or with a rigid one that nothing moves.
+/// @pre  numbers of particles and cells fit in 16 bits
 spu::SolveContact as_kernels_solve_it(const SoftContact& contact, const ContactSides& sides,
                                       std::span<const ContactRigid> rigids, float step);
 
-/// Of a contact as_kernels_solve_it(): it is solved among others of which some are with rigid bodies that impulses move.
-/// @param number  of the rigid body among those of the kernel's task
+/// Completes the result of as_kernels_solve_it() for a group in which impulses move some of the rigid bodies.
+/// @param number  of the contact's rigid body in the kernel's task
 void meet_rigid(spu::SolveContact& solved, const SoftContact& contact, const ContactSides& sides,
                 std::uint16_t number);
 
-/// A contact of two bodies that the kernel contact_find has found, of which one is flat: it is held by cells of the bodies themselves from
-/// now on (ContactModel::held()). @pre nothing has solved it yet
+/// Moves the anchors of a contact that the kernel contact_find has found, and of which one body is flat, to the bodies' own cells
+/// (ContactModel::held()). @pre nothing has solved it yet
 void hold_by_own_cells(spu::SolveContact& contact, const ContactBody& a, const ContactBody& b);
 
-/// As SoftContact::holds_pushes, of a contact that the kernel contact_find has found.
+/// Does what SoftContact::holds_pushes does, for a contact that the kernel contact_find has found.
 void hold_pushes(spu::SolveContact& contact);
 
 /// One iteration over all contacts, one after the other (sequential impulses: [Cat05]).

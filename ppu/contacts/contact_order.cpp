@@ -40,13 +40,13 @@ void ContactOrder::arrange(std::span<const ContactBody> bodies, std::span<const 
     const auto [low, high] = std::minmax(slab_[pairs[pair].first], slab_[pairs[pair].second]);
     return low * slabs_ + high;
   };
-  // Pairs of slabs that occur get the first stage in which both are free.
+  // Each pair of slabs that occurs gets the first stage in which both slabs are free.
   stage_of_.assign(std::size_t{slabs_} * slabs_, kNoStage);
   taken_.clear();
   std::vector<std::uint32_t>& units = units_;
   units.clear();
   for (std::uint32_t i = 0; i < pairs.size(); ++i) units.push_back(unit_of(i));
-  // A slab with itself first: it has most pairs.
+  // A slab with itself comes first: it has the most pairs.
   std::sort(units.begin(), units.end(), [&](std::uint32_t a, std::uint32_t b) {
     return std::pair(a / slabs_ != a % slabs_, a) < std::pair(b / slabs_ != b % slabs_, b);
   });

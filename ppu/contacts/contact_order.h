@@ -1,15 +1,15 @@
 #pragma once
-// In which order pairs of bodies are solved, so that many may be solved at the same time.
+// Finds an order in which pairs of bodies are solved, so that many pairs can be solved at the same time.
 //
-// Bodies are cut into slabs along the longest axis of where they are. The pairs of two slabs are a unit, solved
-// one after the other; units that share no slab may be solved at the same time. They make a stage:
+// Bodies are cut into slabs along the axis along which they are spread farthest. The pairs of two slabs form a unit, solved one after the
+// other. Units that share no slab can be solved at the same time and form a stage:
 //
 //     slab       0     1     2     3
 //     stage 0   0-0   1-1   2-2   3-3
 //     stage 1      0-1         2-3
 //     stage 2            1-2
 //
-// The order depends on bodies only, not on who solves, so the result has the same bits.
+// The order depends on bodies only, not on who solves them, so the result has the same bits.
 
 #include <cstdint>
 #include <span>
@@ -28,11 +28,11 @@ class ContactOrder {
   /// @param pairs  of bodies, ascending; a body may be paired with itself
   void arrange(std::span<const ContactBody> bodies, std::span<const Pair> pairs);
 
-  /// The pairs' numbers in the order in which they are solved.
+  /// Indices of pairs, in the order in which they are solved.
   std::span<const std::uint32_t> order() const { return order_; }
-  /// Of order(): a unit's first number. One more than there are units.
+  /// For each unit: index of its first pair in order(); the end is appended.
   std::span<const std::uint32_t> units() const { return units_; }
-  /// Of units(): a stage's first unit. One more than there are stages.
+  /// For each stage: index of its first unit in units(); the end is appended.
   std::span<const std::uint32_t> stages() const { return stages_; }
 
  private:

@@ -19,7 +19,7 @@ using Eigen::Vector3f;
       "a soft body has positions or velocities that are not finite numbers, or passes 1e15 m");
 }
 
-/// Of what is to be squared, too.
+/// Also checks numbers that will be squared.
 void check_finite(const ContactBody& body) {
   constexpr float kFarthest = 1e15f;  // metres
   bool finite = (body.box.high - body.box.low).cwiseAbs().maxCoeff() < kFarthest;
@@ -27,14 +27,14 @@ void check_finite(const ContactBody& body) {
   if (!finite) refuse_to_be_infinite();
 }
 
-/// What an anchor has of what its particles have.
+/// The mean of a quantity of the anchor's particles, weighted by their shares.
 template <typename OfParticle>
 Vector3f of_anchor(const Anchor& anchor, const ContactBody& /*body*/, const OfParticle& of_particle) {
   Vector3f sum = Vector3f::Zero();
   for (std::size_t k = 0; k < 8; ++k) sum += anchor.share[k] * of_particle(anchor.particle[k]);
   return sum;
 }
-/// Its weights are shares times roots of inverse masses.
+/// The kernel's weights are shares times roots of inverse masses.
 template <typename OfParticle>
 Vector3f of_anchor(const spu::SolveAnchor& anchor, const ContactBody& body, const OfParticle& of_particle) {
   Vector3f sum = Vector3f::Zero();
@@ -46,7 +46,7 @@ Vector3f of_anchor(const spu::SolveAnchor& anchor, const ContactBody& body, cons
   return sum;
 }
 
-/// From a point to where an anchor is before the step.
+/// From a point to the anchor's place before the step.
 Vector3f arm_of(const auto& anchor, const ContactBody& body, const Vector3f& point) {
   return of_anchor(anchor, body, [&](std::size_t i) -> Vector3f { return body.positions[i] - point; });
 }
@@ -72,7 +72,7 @@ void ContactStage::take_over(std::span<const BodyInStage> bodies, float step) {
   bodies_.resize(bodies.size());
   cells_.resize(bodies.size());
   is_crushed_.resize(bodies.size());
-  // Before the first body points into it.
+  // Resizes it now, before bodies refer to it.
   for (const BodyInStage& body : bodies)
     nothing_moves_.resize(std::max(nothing_moves_.size(), body.positions.size()));
   for (std::size_t i = 0; i < bodies.size(); ++i) {
@@ -105,7 +105,7 @@ void ContactStage::take_over(std::span<const BodyInStage> bodies, float step) {
       body.travel += way;
     }
     body.travel /= static_cast<float>(body.ends.size());
-    if (velocities_changed) {  // since the box was made
+    if (velocities_changed) {  // since the box was computed
       for (const Vector3f& end : body.ends) {
         body.box.low = body.box.low.cwiseMin(end);
         body.box.high = body.box.high.cwiseMax(end);
@@ -116,7 +116,8 @@ void ContactStage::take_over(std::span<const BodyInStage> bodies, float step) {
   }
 }
 
-/// Particles that rigid bodies cannot push away, however heavy these are: each round they would give up no more than the particles weigh.
+/// Finds the particles that rigid bodies cannot push away, however heavy these are. Otherwise each round would give way by no more than the
+/// particles' own masses resist.
 void ContactStage::find_held(std::span<const ContactRigid> rigids, float step) {
   if (!has_attachments()) return;
   held_.clear();
@@ -161,7 +162,7 @@ ContactStage::Group& ContactStage::next_group(std::uint32_t a, std::uint32_t b, 
   return group;
 }
 
-/// Points of both bodies.
+/// Looks for points of both bodies.
 void ContactStage::find_here(Group& group, float step) {
   const ContactBody &a = bodies_[group.a], &b = bodies_[group.b];
   group.fast = group.a != group.b && are_fast(a, b);
@@ -182,14 +183,14 @@ void ContactStage::find_here(Group& group, float step) {
   }
 }
 
-/// Of what the worker has found.
+/// For contacts that the worker has found.
 void ContactStage::hold_by_own_cells(Group& group) {
   const ContactBody &a = bodies_[group.a], &b = bodies_[group.b];
   if (!a.model->is_flat() && !b.model->is_flat()) return;
   for (spu::SolveContact& contact : group.solved.contacts) ppu::hold_by_own_cells(contact, a, b);
 }
 
-/// Waits for what the worker was asked for.
+/// Waits for the worker's results.
 void ContactStage::find_among_bodies(float step) {
   const std::span<const FoundContacts> found =
       asked_.empty() ? std::span<const FoundContacts>() : worker->found();
@@ -225,20 +226,20 @@ void ContactStage::find_with_rigid(std::span<const BodyInStage> bodies, std::spa
   }
 }
 
-/// Pairs as ContactOrder has them; then those with rigid bodies that move; then those with others.
+/// Orders groups: pairs by ContactOrder; then groups with moving rigid bodies; then those with static ones.
 void ContactStage::put_in_order() {
   pairs_.clear();
   for (std::size_t i = 0; i < pair_groups_; ++i) pairs_.emplace_back(groups_[i].a, groups_[i].b);
   order_.arrange(bodies_, pairs_);
 }
 
-/// Whether the worker may solve what this thread has found.
+/// Whether the worker can solve contacts that this thread has found.
 bool ContactStage::can_hand_to_worker(const Group& group) const {
   return !group.by_worker && !group.on_held && group.contacts.size() <= ContactWorker::kMostContacts &&
          worker->holds(group.a) && worker->holds(group.b);
 }
 
-/// Which rigid bodies the worker would move.
+/// Finds the rigid bodies that the worker would move.
 void ContactStage::find_rigid_sets(std::span<ContactRigid> rigids) {
   rigid_sets_.begin(rigids);
   for (std::size_t i = pair_groups_; i < group_count_; ++i) {
@@ -254,7 +255,7 @@ void ContactStage::find_rigid_sets(std::span<ContactRigid> rigids) {
   rigid_sets_.arrange(*worker);
 }
 
-/// Where the worker solves contacts, or there is much to do: a job of its own takes longer than a few attachments take here.
+/// The worker gets the attachments if it also solves contacts, or if there are many: for a few of them a job takes longer than this thread.
 bool ContactStage::hand_attachments_to_worker(std::size_t rigids) {
   attach_units_.clear();
   if (!has_attachments()) return false;
@@ -271,7 +272,7 @@ bool ContactStage::hand_attachments_to_worker(std::size_t rigids) {
   return true;
 }
 
-/// Contacts to the worker's memory if he can solve them.
+/// Copies contacts to the worker's memory if it can solve them.
 void ContactStage::hand_to_worker(Group& group, std::span<ContactRigid> rigids, float step) {
   if (!can_hand_to_worker(group)) return;
   const ContactSides sides{&bodies_[group.a], group.with_rigid ? nullptr : &bodies_[group.b], rigids};
@@ -296,7 +297,7 @@ void ContactStage::hand_to_worker(Group& group, std::span<ContactRigid> rigids, 
   group.by_worker = true;
 }
 
-/// What pushes a body's cells apart must not push it into others.
+/// Pushes that move a body's cells apart must not move it into others.
 void ContactStage::hold_pushes_of_crushed_bodies() {
   for (std::size_t i = 0; i < group_count_; ++i) {
     Group& group = groups_[i];
@@ -308,7 +309,7 @@ void ContactStage::hold_pushes_of_crushed_bodies() {
   }
 }
 
-/// Points near each other move the same particles: what each of them moves is what its share of all their impulses does.
+/// Points near each other move the same particles. The mobility of each point is therefore taken for its share of all their impulses.
 void ContactStage::find_presses(const Group& group, std::span<const ContactRigid> rigids) {
   const ContactBody& body = bodies_[group.a];
   const auto for_each_press = [&](const auto& work) {
@@ -353,8 +354,8 @@ void ContactStage::release_supports() {
   supports_.release();
 }
 
-/// Contacts of bodies with a restitution and those with sharp things, whoever has found them. Two that pressed on each other in the last
-/// substep do not hit each other: what they do against each other is their deformation.
+/// Collects contacts of bodies with a restitution, and contacts with sharp things, whether found by the worker or here. Two bodies that
+/// pressed on each other in the last substep do not hit each other: their relative motion is deformation.
 void ContactStage::bounce(std::span<ContactRigid> rigids, float step) {
   for (std::size_t i = 0; i < group_count_; ++i) {
     const Group& group = groups_[i];
@@ -379,7 +380,7 @@ void ContactStage::bounce(std::span<ContactRigid> rigids, float step) {
       bounce.friction = friction, bounce.restitution = std::min(restitution, 1.0f);
       bounces_.add(bounce);
     };
-    // Those with rigid bodies were found here, also where the worker will solve them.
+    // Contacts with rigid bodies were found here, even if the worker will solve them.
     if (group.by_worker && !group.with_rigid) {
       for (const spu::SolveContact& contact : group.solved.contacts) {
         const Vector3f normal(contact.normal);
@@ -408,7 +409,7 @@ void ContactStage::bounce(std::span<ContactRigid> rigids, float step) {
   if (!bounces_.empty()) bounces_.solve(bodies_, rigids, settings.bounces, step);
 }
 
-/// For the bounces of the next substep.
+/// Remembers them for the bounces of the next substep.
 void ContactStage::remember_who_presses(std::span<const ContactRigid> rigids) {
   pressed_.clear();
   for (std::size_t i = 0; i < group_count_; ++i) {
@@ -431,7 +432,7 @@ void ContactStage::find_touched_cells() {
     std::sort(cells.begin(), cells.end());
     cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
   };
-  // Most cells are touched at several points. Room for each of them twice is enough.
+  // Most cells are touched at several points. Room for each cell twice is enough.
   const auto add = [&](std::uint32_t body, std::uint32_t cell) {
     std::vector<std::uint32_t>& cells = touched_[body];
     if (cells.size() == cells.capacity()) keep_each_once(cells);
@@ -478,7 +479,7 @@ void ContactStage::step(std::span<const BodyInStage> bodies, std::span<const Obs
         asked_.emplace_back(a, b);
     if (!asked_.empty()) worker->find(asked_);
   }
-  // While the worker looks at pairs. In the order of groups these come behind pairs all the same.
+  // Runs while the worker looks at pairs. The groups found here are moved behind those of pairs afterwards.
   find_with_rigid(bodies, obstacles, rigids, step);
   const std::size_t rigid_groups = group_count_;
   find_among_bodies(step);
@@ -499,7 +500,7 @@ void ContactStage::step(std::span<const BodyInStage> bodies, std::span<const Obs
   remember_who_presses(rigids);
 }
 
-/// Calls work(group, iterations), those that alternate behind the others.
+/// Calls work(group, iterations). Groups that alternate come after the others.
 template <typename Work>
 void ContactStage::for_each_turn(std::span<Group* const> groups, const Work& work) const {
   int turns = 0;
@@ -521,7 +522,7 @@ void ContactStage::iterate_here(std::span<Group* const> groups, std::span<Contac
   });
 }
 
-/// In the order in which a worker would do it, and those that are left to this thread.
+/// Solves groups in the same order as a worker would, and then those that are left.
 void ContactStage::solve_here(std::span<ContactRigid> rigids, float step) {
   bounce(rigids, step);
   here_.clear();
@@ -539,8 +540,8 @@ void ContactStage::solve_here(std::span<ContactRigid> rigids, float step) {
   }
 }
 
-/// Each round on what contacts have left. What pushes must not be is taken away before contacts push for the last time: they push
-/// against what is left.
+/// Each round solves what contacts have left. The last one limits pushes before contacts push for the last time, so that contacts push
+/// against the limited ones.
 void ContactStage::solve_attachments(std::span<ContactRigid> rigids, float step, int round) {
   if (!has_attachments()) return;
   if (round == 0) begin_attachments(rigids, step);
@@ -557,7 +558,7 @@ void ContactStage::begin_attachments(std::span<ContactRigid> rigids, float step)
 }
 
 void ContactStage::weigh_rigid_groups(std::span<const ContactRigid> rigids) {
-  // Of the soft bodies' mass. What is lighter hands on little, in an iteration, of what one of them does to another one.
+  // As a share of the soft bodies' mass. In one iteration, a lighter rigid body passes on little of one soft body's impulse to another.
   constexpr float kLight = 0.2f;
   touched_rigids_.assign(rigids.size(), {});
   for (std::size_t i = pair_groups_; i < group_count_; ++i) {
@@ -584,7 +585,7 @@ void ContactStage::weigh_rigid_groups(std::span<const ContactRigid> rigids) {
   }
 }
 
-/// Rigid bodies that move before those that nothing moves.
+/// Groups with moving rigid bodies come before groups with static ones.
 void ContactStage::add_rigid_groups(std::span<const ContactRigid> rigids) {
   const auto with_moving = [&](const Group& group) {
     return std::any_of(group.contacts.begin(), group.contacts.end(),
@@ -624,7 +625,7 @@ SolveGroup ContactStage::solved_by_worker(const Group& group) const {
   return solved;
 }
 
-/// Those with rigid bodies that move, a unit for each set of these.
+/// Adds groups with rigid bodies that move: one unit for each set of these.
 void ContactStage::add_rigid_sets_to(SolveStages& stages) {
   if (rigid_sets_.sets() == 0) return;
   stages.stages.push_back(static_cast<std::uint32_t>(stages.units.size()));
@@ -640,7 +641,7 @@ void ContactStage::add_rigid_sets_to(SolveStages& stages) {
   }
 }
 
-/// All units at the same time.
+/// All units may be solved at the same time.
 void ContactStage::add_attachments_to(SolveStages& stages, bool ends) const {
   stages.stages.push_back(static_cast<std::uint32_t>(stages.units.size()));
   for (std::uint32_t unit = 0; unit < attach_units_.units().size(); ++unit) {
@@ -649,7 +650,7 @@ void ContactStage::add_attachments_to(SolveStages& stages, bool ends) const {
   }
 }
 
-/// Of each body its contacts with what nothing moves, and its touched cells.
+/// Adds for each body its contacts with static bodies, and its touched cells.
 void ContactStage::add_bodies_to(SolveStages& stages, float stiffening) {
   constexpr std::size_t kBodiesInUnit = 12;
   stages.stages.push_back(static_cast<std::uint32_t>(stages.units.size()));
@@ -669,7 +670,7 @@ void ContactStage::add_bodies_to(SolveStages& stages, float stiffening) {
   }
 }
 
-/// What the worker can solve is his from now on; the rest is here_. @return  whether attachments are his
+/// Gives the worker what it can solve; the rest goes to here_. @return  whether the worker solves attachments
 bool ContactStage::share_with_worker(std::span<ContactRigid> rigids, float step) {
   weigh_rigid_groups(rigids);
   if (has_attachments()) begin_attachments(rigids, step);
@@ -692,7 +693,7 @@ bool ContactStage::share_with_worker(std::span<ContactRigid> rigids, float step)
   return attachments_by_worker;
 }
 
-/// What this thread solves in a round, behind what bodies do to each other. The worker waits.
+/// Solves this thread's groups of a round, after contacts between bodies. The worker waits.
 void ContactStage::solve_in_between(std::span<ContactRigid> rigids, float step, int round, float stiffening,
                                     bool with_attachments) {
   iterate_here(std::span(here_).first(here_that_move_), rigids, step);
@@ -705,7 +706,7 @@ void ContactStage::solve_in_between(std::span<ContactRigid> rigids, float step, 
   }
 }
 
-/// One chain of jobs for all rounds, unless there is something in between that only this thread can solve.
+/// Makes one chain of jobs for all rounds, unless this thread has to solve something in between.
 void ContactStage::solve_with_worker(std::span<ContactRigid> rigids, float step) {
   const bool attachments_by_worker = share_with_worker(rigids, step);
   const bool attachments_here = has_attachments() && !attachments_by_worker;
@@ -739,7 +740,7 @@ void ContactStage::take_from_worker() {
     if (changed_by_worker(i)) worker->take(i, bodies_[i].velocities, bodies_[i].pushes);
 }
 
-/// Of pairs of soft bodies. What rigid bodies and sleepers get is not counted here. A push moves particles, with their momenta.
+/// Sums up pairs of soft bodies. Rigid and sleeping bodies are not counted here. A push moves particles together with their momenta.
 void ContactStage::take_back_lost_spin(float step) {
   using Eigen::Vector3d;
   lost_spin_.begin(bodies_.size());
@@ -800,7 +801,7 @@ void ContactStage::append_contacts(std::vector<PressingContact>& contacts) const
       contacts.push_back(
           {group.a, group.b, group.with_rigid, rigid, Vector3f(point), Vector3f(normal), impulse});
     };
-    // Those with rigid bodies were found here, also where the worker has solved them.
+    // Contacts with rigid bodies were found here, even if the worker has solved them.
     if (group.by_worker) {
       for (std::size_t c = 0; c < group.solved.contacts.size(); ++c) {
         const spu::SolveContact& contact = group.solved.contacts[c];

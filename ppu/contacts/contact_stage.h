@@ -1,5 +1,5 @@
 #pragma once
-// The contacts of all soft bodies of a world in one substep.
+// Finds and solves the contacts of all soft bodies of a world in one substep.
 
 #include <Eigen/Core>
 #include <array>
@@ -29,94 +29,94 @@
 
 namespace softcell::ppu {
 
-/// A soft body and what is near it.
+/// A soft body and the obstacles near it.
 struct BodyInStage {
   const ContactModel* model = nullptr;
   std::span<const Eigen::Vector3f> positions = {};   ///< of its particles, metres
-  std::span<const Eigen::Vector3f> velocities = {};  ///< m/s, with the gravity of the substep
+  std::span<const Eigen::Vector3f> velocities = {};  ///< m/s, with the gravity of the substep included
   float friction = 0.5f;
   float restitution = 0;
   Bounds<3> box = {};                         ///< box_of_step()
-  std::vector<std::uint32_t> obstacles = {};  ///< indices of those that it may meet
-  KnownSides* sides = nullptr;                ///< of the body, from substep to substep; not null
-  bool asleep = false;                        ///< nothing moves it
-  CollisionFilter filter = {};                ///< of other soft bodies
+  std::vector<std::uint32_t> obstacles = {};  ///< indices of obstacles that it may meet
+  KnownSides* sides = nullptr;                ///< what the body remembers from substep to substep; not null
+  bool asleep = false;                        ///< contacts do not move it
+  CollisionFilter filter = {};                ///< towards other soft bodies
 };
 
-/// A contact of the last step that presses.
+/// A contact of the last step with an impulse above 0.
 struct PressingContact {
-  std::uint32_t a = 0, b = 0;  ///< bodies; b is of no use with a rigid one
+  std::uint32_t a = 0, b = 0;  ///< bodies; b is unused if the contact is with a rigid body
   bool with_rigid = false;
-  std::uint32_t rigid = 0;          ///< with_rigid: which
+  std::uint32_t rigid = 0;          ///< if with_rigid: index of the rigid body
   Eigen::Vector3f point{0, 0, 0};   ///< metres
   Eigen::Vector3f normal{0, 1, 0};  ///< from b, or the rigid body, to a
   float impulse = 0;                ///< kg m/s along the normal, above 0
 };
 
-/// Few iterations of each group in several rounds: what a group does to another is heard soon. With two rounds of four, and
-/// a stiffening of a half, heaps never came to rest (docs/notes/performance.md).
+/// Many rounds with few iterations of each group, so that impulses of one group reach the others soon. With two rounds of four, and a
+/// stiffening of a half, heaps never came to rest (docs/notes/performance.md).
 struct ContactSettings {
-  int rounds = 4;                 ///< over all groups
-  int iterations = 3;             ///< in a group, in a round
-  int heavy_iterations = 8;       ///< likewise, of a body with a rigid one that outweighs it
+  int rounds = 4;                 ///< number of passes over all groups
+  int iterations = 3;             ///< iterations of each group in a round
+  int heavy_iterations = 8;       ///< the same for a group of a body with a heavier rigid one
   int attachment_iterations = 4;  ///< over all attachments, in a round
-  /// 0..1: the share of their motion against each other that corners of touched cells lose after each round but the last.
+  /// 0..1: the share of their relative motion that corners of touched cells lose after each round but the last.
   float stiffening = 0.35f;
   BounceSettings bounces = {};
 };
 
-/// Around particles and where they would be after `step` seconds. @pre there is one
+/// A box around particles and their places after `step` seconds. @pre there is at least one
 Bounds<3> box_of_step(std::span<const Eigen::Vector3f> positions, std::span<const Eigen::Vector3f> velocities,
                       float step);
 
 /// Used by one thread.
 class ContactStage {
  public:
-  /// Finds the contacts that bodies would have in `step` seconds, and the velocities with which they have them: particles then move
-  /// by step (v + push). Rigid bodies' velocities change, too.
-  /// @throws std::runtime_error  a body is not finite, or 1e15 m large or far.
-  /// @param links  of rigid bodies with each other and with what nothing moves; those of attached ones are not wanted
+  /// Finds the contacts that bodies would have within `step` seconds and solves them: particles then move by step (v + push). Velocities of
+  /// rigid bodies change, too.
+  /// @throws std::runtime_error  a body is not finite, or 1e15 m large or far away.
+  /// @param links  of rigid bodies with each other and with static ones; not those of attachments
   void step(std::span<const BodyInStage> bodies, std::span<const Obstacle> obstacles,
             std::span<ContactRigid> rigids, const RigidLinks& links, float step);
 
-  /// Of a body after the last step, m/s; a body that sleeps has the same velocities as before.
+  /// Velocities of a body after the last step, m/s; those of a sleeping body have not changed.
   std::span<const Eigen::Vector3f> velocities(std::size_t body) const { return bodies_[body].velocities; }
-  /// What moves it out of what it is in, in that step only, m/s.
+  /// Velocities, m/s, that move the body's particles out of penetration, in that step only.
   std::span<const Eigen::Vector3f> pushes(std::size_t body) const { return bodies_[body].pushes; }
 
-  /// Appends those of the last step that press, in the order of bodies; behind them what stopped or threw back a body as a whole.
+  /// Appends the contacts of the last step whose impulse is above 0, in the order of bodies, and then those of bounces and sharp edges.
   void append_contacts(std::vector<PressingContact>& contacts) const;
-  /// Sets of the bodies that pressed on each other in the last step, directly or through others. What presses on a rigid body only is
-  /// alone.
+  /// Islands: sets of bodies that pressed on each other in the last step, directly or through other soft bodies. A body that presses on
+  /// rigid ones only is an island of its own.
   void find_islands(DisjointSets& islands) const;
-  /// Bodies have other numbers from now on.
+  /// Call it when bodies get other numbers.
   void forget_who_presses() { pressed_.clear(); }
 
   ContactSettings settings;
-  /// Who finds and solves what he can; null: this thread does everything. Outlives the steps.
+  /// Finds and solves all the contacts that it can; null: this thread finds and solves all. Must outlive the steps.
   ContactWorker* worker = nullptr;
-  /// Of these bodies, solved with contacts: behind those of bodies that move, before those with what nothing moves. Null: none. Outlives
-  /// the steps.
+  /// The attachments of these bodies, solved in each round after contacts with moving bodies and before contacts with static ones. Null:
+  /// none. Must outlive the steps.
   AttachmentSolver<3>* attachments = nullptr;
 
  private:
-  /// The contacts of a pair of bodies, as seen from a, or of a body with rigid ones.
+  /// The contacts of a pair of bodies, as seen from a, or of one body with rigid ones.
   struct Group {
     std::uint32_t a = 0, b = 0;
     bool with_rigid = false;
-    bool by_worker = false;  ///< he solves them: they are in `solved`
-    bool heavy = false;      ///< with a rigid body that outweighs a
+    bool by_worker = false;  ///< the worker solves them: they are in `solved`
+    bool heavy = false;      ///< with a rigid body that is heavier than a
     bool alternates =
-        false;             ///< with others that touch the same light rigid body: one iteration each in turn
-    bool fast = false;     ///< two bodies that may pass each other in the substep
-    bool sharp = false;    ///< some of its contacts limit how far a goes on as a whole
-    bool on_held = false;  ///< some of its contacts are SoftContact::on_held, which the worker does not know
+        false;             ///< with groups that touch the same light rigid body: one iteration each in turn
+    bool fast = false;     ///< the two bodies may pass through each other in the substep
+    bool sharp = false;    ///< some of its contacts limit how far a moves on as a whole
+    bool on_held = false;  ///< some of its contacts are SoftContact::on_held: the worker ignores that
     std::vector<SoftContact> contacts;  ///< found here
     FoundContacts solved;
-    /// Of those that the worker moves in it; kNone: nothing moves the rigid bodies.
+    /// The worker's set of rigid bodies; kNone: impulses do not move the rigid bodies.
     std::uint32_t rigid_set = RigidSets::kNone;
     std::size_t size() const { return by_worker ? solved.contacts.size() : contacts.size(); }
-    /// Of a contact with a rigid body: what its soft one has got, kg m/s.
+    /// The impulse on the soft body of a contact with a rigid one, kg m/s.
     Eigen::Vector3f whole_impulse(std::size_t contact) const {
       const SoftContact& found = contacts[contact];
       const Eigen::Vector3f friction =
@@ -145,7 +145,7 @@ class ContactStage {
   bool hand_attachments_to_worker(std::size_t rigids);
   void find_rigid_sets(std::span<ContactRigid> rigids);
   void hand_to_worker(Group& group, std::span<ContactRigid> rigids, float step);
-  /// Without contacts nobody changes between rounds what attachments have solved: they have the iterations of all rounds in one.
+  /// Without contacts, nothing changes the attachments' results between rounds: one round then has the iterations of all.
   int rounds() const { return group_count_ == 0 ? 1 : settings.rounds; }
   int attachment_iterations() const { return settings.attachment_iterations * settings.rounds / rounds(); }
   int iterations_of(const Group& group) const {
@@ -186,42 +186,42 @@ class ContactStage {
   void give_to_worker();
 
   std::vector<ContactBody> bodies_;
-  std::vector<float> nothing_moves_;  // inverse masses of bodies that sleep
+  std::vector<float> nothing_moves_;  // inverse masses of bodies that sleep: zeros
   std::vector<EndCells> cells_;       // of each body
   std::vector<std::uint32_t> by_low_;
-  std::vector<Pair> pairs_, asked_;     // asked_: of the worker
-  std::vector<SoftContact> other_way_;  // b's points in a
+  std::vector<Pair> pairs_, asked_;     // asked_: pairs for the worker
+  std::vector<SoftContact> other_way_;  // points of b in a
   SweptContacts swept_;
-  std::vector<Group> groups_;  // of pairs, then with rigid bodies
+  std::vector<Group> groups_;  // groups of pairs, then groups with rigid bodies
   std::size_t group_count_ = 0;
-  std::size_t pair_groups_ = 0;                      // of them
-  ContactOrder order_;                               // of the former
+  std::size_t pair_groups_ = 0;                      // how many of them are of pairs
+  ContactOrder order_;                               // of the groups of pairs
   std::vector<std::vector<std::uint32_t>> touched_;  // of each body: cells, ascending
   CrushedCells crushed_cells_;
   SharpContacts sharp_contacts_;
   std::vector<bool> is_crushed_;     // of each body: it has crushed cells
-  std::vector<float> moved_by_all_;  // of each particle that presses, by an impulse of 1 at each point
+  std::vector<float> moved_by_all_;  // of each pressing particle, by an impulse of 1 at each point
   std::vector<Press> presses_;
   Supports supports_;
   RigidSets rigid_sets_;
   AttachUnits attach_units_;
   Bounces bounces_;
-  // In the last substep: a, b or a rigid one's number, and which.
+  // Of the last substep: body a; body b or the number of the rigid body; whether it is a rigid one.
   std::vector<std::array<std::uint32_t, 3>> pressed_;
-  std::vector<Group*> here_;        // solved here, among what the worker solves
-  std::size_t here_that_move_ = 0;  // of them, the first ones
-  /// Who touches a rigid body that moves.
+  std::vector<Group*> here_;        // groups that this thread solves; the worker solves the others
+  std::size_t here_that_move_ = 0;  // how many of them, the first ones, have moving bodies only
+  /// Which groups touch a rigid body that moves.
   struct TouchedRigid {
     static constexpr std::size_t kNobody = ~std::size_t{0};
     std::size_t first = kNobody;  // group
     bool by_several = false;
-    float lightest = 0;  // kg, of the soft bodies
+    float lightest = 0;  // kg, of the soft bodies that touch it
   };
   std::vector<TouchedRigid> touched_rigids_;
-  std::vector<Group*> of_set_;  // of rigid bodies
+  std::vector<Group*> of_set_;  // groups with rigid bodies of one set
   LostSpin lost_spin_;
   std::vector<HeldParticle<3>> held_;
-  std::vector<AttachedBody<3>> attached_;  // bodies_, as attachments see them
+  std::vector<AttachedBody<3>> attached_;  // bodies_ in the form that attachments use
   SolveStages stages_;
 };
 

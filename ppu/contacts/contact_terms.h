@@ -1,5 +1,5 @@
 #pragma once
-// What the ways of finding contacts have in common.
+// Terms that all ways of finding contacts share.
 
 #include <Eigen/Core>
 #include <Eigen/LU>
@@ -12,30 +12,30 @@
 
 namespace softcell::ppu {
 
-inline constexpr float kNear = 0.005f;  ///< cells: what comes nearer in a substep is in contact
+inline constexpr float kNear = 0.005f;  ///< cells: points that come nearer in a substep are in contact
 
 inline bool contains(const Bounds<3>& box, const Eigen::Vector3f& point) {
   return (point.array() < box.high.array()).all() && (box.low.array() < point.array()).all();
 }
 
-/// Fills in what follows from a contact's two velocities.
+/// Fills in the fields that follow from the motion along a contact's normal.
 /// @param end  metres, along the normal, at the substep's end; below 0 inside   @param approach  m/s along the normal, of a against b
 inline void complete(SoftContact& contact, float end, float approach, float friction, float step) {
-  // The distance at the beginning, if what moves moves straight.
+  // The distance at the beginning, assuming straight motion.
   const float begin = end - step * approach;
   contact.least_velocity = -std::max(begin, 0.0f) / step;
   contact.depth = std::max(-begin, 0.0f);
   contact.friction = friction;
 }
 
-/// Out of a soft body.
+/// The way out of a soft body.
 struct WayOut {
   float distance;  ///< metres to the surface, below 0 inside
   Eigen::Vector3f normal;
 };
 
-/// @param inverse  of DeformedPlace::jacobian   @param allowance  TouchPoint::allowance of what is there
-/// @return none if that is not in contact
+/// @param inverse  of DeformedPlace::jacobian   @param allowance  TouchPoint::allowance of the point
+/// @return none if the point is not in contact
 inline std::optional<WayOut> way_out_by(const FieldValue& field, const Eigen::Matrix3f& inverse,
                                         float allowance, float spacing) {
   const Eigen::Vector3f outwards = inverse.transpose() * field.gradient;
@@ -46,7 +46,8 @@ inline std::optional<WayOut> way_out_by(const FieldValue& field, const Eigen::Ma
   return WayOut{distance, outwards / steep};
 }
 
-/// By the nearest face. @param allowance  TouchPoint::allowance of what is at a place of the body   @return none if that is not in contact
+/// The way out through the nearest face. @param allowance  TouchPoint::allowance of a point at `place`   @return none if that point is not
+/// in contact
 inline std::optional<WayOut> way_out_of(const ContactBody& body, const DeformedPlace& place,
                                         float allowance) {
   return way_out_by(body.model->surface.field(place.cell, place.xi), place.jacobian.inverse(), allowance,

@@ -14,11 +14,11 @@ namespace {
 using Eigen::Vector3f;
 
 constexpr int kIterations = 3;
-// In a substep so much of the volume that is missing comes back, and no more than kMostBack of the volume at rest:
-// with more, pushes enter what the body lies on.
+// A substep gives back this share of the missing volume, and no more than kMostBack of the volume at rest: larger pushes would enter what
+// the body lies on.
 constexpr float kShareBack = 0.15f, kMostBack = 0.04f;
-// Of cells without any extent a small change of volume would be a large motion: their mobility counts as this much
-// at least, in 1 / (mass of the cell), of a cell with edges of 1.
+// In a cell without any extent a small change of volume would need a large motion: the mobility counts as this much at least, in 1 / (mass
+// of the cell), for a cell with edges of 1.
 constexpr float kLeastMobility = 0.05f;
 
 /// Mean edges, in cells.
@@ -51,7 +51,7 @@ Edges edges_at_beginning(const ContactBody& body, const std::array<std::uint32_t
   return edges_in(body.positions, body.spacing(), corners);
 }
 
-/// By how much the volume grows with each corner's place, in cells.
+/// The derivative of the volume by each corner's place, in cells.
 std::array<Vector3f, 8> gradient(const Edges& edges) {
   const Vector3f yz = edges.y.cross(edges.z), zx = edges.z.cross(edges.x), xy = edges.x.cross(edges.y);
   std::array<Vector3f, 8> by_corner;
@@ -64,7 +64,7 @@ std::array<Vector3f, 8> gradient(const Edges& edges) {
 void grow(std::vector<Vector3f>& values, float per_value, const std::array<std::uint32_t, 8>& corners,
           const Edges& edges, float wanted, const ContactBody& body) {
   auto by_corner = gradient(edges);
-  if (body.model->is_flat())  // it stays a layer
+  if (body.model->is_flat())  // keeps it a layer
     for (Vector3f& by : by_corner) by.z() = 0;
   const std::span<const float> masses = body.model->masses();
   float mass = 0, mobility = 0;
@@ -96,7 +96,7 @@ CrushedCellCount count_crushed_cells(const Lattice<3>& lattice, std::span<const 
   return count;
 }
 
-/// Where particles would be, in cells.
+/// The places where particles would be at the end, in cells.
 void CrushedCells::place_ends(const ContactBody& body, float step) {
   const float per_spacing = 1 / body.spacing();
   ends_.resize(body.positions.size());
@@ -104,7 +104,7 @@ void CrushedCells::place_ends(const ContactBody& body, float step) {
     set_row(ends_[i], per_spacing * (body.positions[i] + step * body.velocities[i]));
 }
 
-/// As edges_of() has it, three numbers at a time.
+/// The same as edges_of(), three numbers at a time.
 float CrushedCells::volume_at_end(const std::array<std::uint32_t, 8>& corners) const {
   Eigen::Array4f x = Eigen::Array4f::Zero(), y = x, z = x;
   for (unsigned k = 0; k < 8; ++k) {

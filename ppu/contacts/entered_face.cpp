@@ -7,16 +7,16 @@ namespace {
 
 using Eigen::Vector3f;
 
-constexpr float kDeepAtRest = 0.1f;   // cells: what is not so deep leaves by the nearest face
-constexpr int kMostStepsAtRest = 16;  // of a way
-constexpr float kOneFace = 0.5f;      // cosine between normals of what counts as one face
+constexpr float kDeepAtRest = 0.1f;   // cells: less deep points leave through the nearest face
+constexpr int kMostStepsAtRest = 16;  // along a line
+constexpr float kOneFace = 0.5f;      // cosine between normals that count as one face
 
 bool are_alike(const Vector3f& a, const Vector3f& b) { return a.dot(b) > kOneFace * a.norm() * b.norm(); }
 
-/// The field of the face that a way through a body at rest meets, at the place where the way begins: as if the face were plane, and nothing
-/// else there. Steps are nearly as long as the surface is far: at the lattice's boundary they end within.
+/// Follows a line through the body at rest to the face that it meets, and returns the field of this face at the line's begin, as if the
+/// face were plane and alone. Each step is nearly as long as the distance to the surface, so steps end within the lattice's boundary.
 /// @param direction  of unit length, in cells
-/// @return  none: the way meets nothing
+/// @return  none: the line meets no face
 std::optional<FieldValue> field_of_face(const ContactModel& model, const DeformedPlace& place,
                                         FieldValue field, const Vector3f& direction) {
   const auto low = [&](std::uint32_t cell) { return Vector3f(model.lattice().cells[cell].cast<float>()); };

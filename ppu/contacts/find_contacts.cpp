@@ -19,21 +19,21 @@ namespace {
 using Eigen::Matrix3f;
 using Eigen::Vector3f;
 
-// In cells. Ways are followed in steps, none below kLeastStep.
+// In cells. A point's motion is followed in steps, none below kLeastStep.
 constexpr float kLeastStep = 0.02f;
-constexpr float kMostSteps = 256;  // of a way: what is faster goes in longer ones
-// A point so near behind a triangle, in cells, has been pressed through it; and one so near before it may be, from the other side.
+constexpr float kMostSteps = 256;  // for one motion: a faster point takes longer steps
+// A point this near behind a triangle, in cells, has been pressed through it; a point this near in front may have been, from the other
+// side.
 constexpr float kPressedThrough = 0.25f;
-// Deeper behind it only if the way to it from well inside of the body goes through the triangle.
+// A point farther behind, up to this, has been pressed through only if the line to it from well inside of the body crosses the triangle.
 constexpr float kDeepest = 2;
-constexpr float kClearSide = 0.05f;  // cells: what is nearer to a triangle may be on either side
-// Cosines between normals: of the two sides of something thin; of what counts as one face. Of triangles which all are like one of them no two
+constexpr float kClearSide = 0.05f;  // cells: a point nearer to a triangle may be on either side
+// Cosines between normals: of the two sides of a thin plate, and of faces that count as one. If all triangles are like one of them, no two
 // are opposite.
 constexpr float kOpposite = -0.5f, kAlike = 0.5f;
-constexpr int kApartAtRest =
-    3;  // a point never meets cells of its own body that are nearer at rest: their middles
+constexpr int kApartAtRest = 3;  // a point never meets cells of its own body whose middles are nearer at rest
 
-/// Where a point is before and after the substep, in the frame of an obstacle that stands still.
+/// A point before and after the substep, in the frame of an obstacle, as if the obstacle stood still.
 struct Way {
   Vector3f from, to;
 };
@@ -41,10 +41,10 @@ struct Way {
 /// A contact in the obstacle's frame.
 struct Hit {
   Vector3f normal;
-  float end;  ///< metres, along the normal, at the end of the way: below 0 inside
+  float end;  ///< metres, along the normal, at the end of the motion: below 0 inside
 };
 
-/// How far a point is beside a triangle, squared: not above or below it.
+/// How far a point is beside a triangle, squared: 0 if it is above or below it.
 /// @param normal  of the triangle, of unit length
 template <typename Real>
 Real squared_beside(const std::array<Vector3f, 3>& triangle, const Vector3f& normal, const Vector3f& point) {
@@ -67,28 +67,28 @@ class ObstacleTriangle {
 
   bool has_area() const { return face_.area > 0; }
   const Vector3f& normal() const { return face_.normal; }
-  /// Above its plane, on the side from which it is wound counterclockwise: metres.
+  /// Height above the triangle's plane, on the side from which it is wound counterclockwise: metres.
   float height(const Vector3f& point) const { return face_.normal.dot(point - triangle_[0]); }
 
-  /// Whether the triangle is above or below a point, or beside it by no more than `most` metres. @pre has_area()
+  /// Whether a point is above or below the triangle, or beside it by no more than `most` metres. @pre has_area()
   bool is_over(const Vector3f& point, float most) const {
-    // Most triangles are beside the point by more than what it is above or below them: no need for the nearest place.
+    // Most triangles are farther beside the point than above or below it: no need for the nearest point.
     const float farthest = 1.01f * (most + std::abs(height(point)));
     if ((point.array() < box_.low.array() - farthest).any() ||
         (point.array() > box_.high.array() + farthest).any())
       return false;
-    // Of a ground's triangles a kilometre long, or of needles, floats know the nearest place to a tenth of a millimetre, or worse.
+    // For triangles of a kilometre, or needles, floats give the nearest point only to a tenth of a millimetre, or worse.
     const bool is_exact = face_.rounding < most * face_.area;
     if (is_exact) return squared_beside<float>(triangle_, face_.normal, point) <= most * most;
     return squared_beside<double>(triangle_, face_.normal, point) <= double{most} * double{most};
   }
 
-  /// Whether two points are on different sides of its plane.
+  /// Whether two points are on different sides of the triangle's plane.
   bool parts(const Vector3f& a, const Vector3f& b) const {
     return face_.cross.dot(a - triangle_[0]) * face_.cross.dot(b - triangle_[0]) < 0;
   }
 
-  /// @param front  1 or -1: towards the side from which it is wound counterclockwise, or the other one
+  /// @param front  1 or -1: the front is the side from which it is wound counterclockwise, or the other one
   /// @param inside  a place of the point's body, before the substep
   std::optional<Hit> meet(const Way& way, const Vector3f& inside, float spacing, float front) const {
     if (!has_area()) return {};
@@ -105,7 +105,7 @@ class ObstacleTriangle {
     }
     const float to = side * height(way.to) - rounding_;
     if (to > near) return {};
-    if (is_deep) return Hit{side * normal(), to};  // the next triangle may be over the point
+    if (is_deep) return Hit{side * normal(), to};  // the next triangle may be the one over the point
     const float share =
         from - to > 0 ? std::clamp((from - rounding_) / (from - rounding_ - to), 0.0f, 1.0f) : 0.0f;
     if (!is_over(way.from + share * (way.to - way.from), near)) return {};
@@ -119,13 +119,13 @@ class ObstacleTriangle {
   float rounding_;
 };
 
-/// Where a way comes near an obstacle.
+/// The place where a point's motion comes near an obstacle.
 struct Arrival {
   float share;  ///< of the way
   Separation there;
 };
 
-/// @param near  metres from the obstacle  @return  the first such place of the way; none: it comes to none
+/// @param near  metres from the obstacle  @return  the first such place of the motion; none: it does not come near
 std::optional<Arrival> arrive(const Obstacle& obstacle, const Vector3f& from, const Vector3f& along,
                               float near, float spacing) {
   const float length = along.norm();
@@ -141,7 +141,7 @@ std::optional<Arrival> arrive(const Obstacle& obstacle, const Vector3f& from, co
   return Arrival{length > 0 ? done / length : 1, here};
 }
 
-/// From outside the first place counts that is inside: at the end it may be nearer to the other side.
+/// For a point from outside the first place inside counts: at the end it may be nearer to the other side.
 std::optional<Hit> meet(const Obstacle& obstacle, const Way& way, float allowance, float spacing) {
   const Vector3f along = way.to - way.from;
   const auto arrival = arrive(obstacle, way.from, along, kNear * spacing - allowance, spacing);
@@ -150,11 +150,12 @@ std::optional<Hit> meet(const Obstacle& obstacle, const Way& way, float allowanc
   return Hit{there.normal, there.distance + allowance + (1 - share) * there.normal.dot(along)};
 }
 
-/// A point that has been pressed in deep is nearer to another face than to the one by which it came in: to the far side of something thin, or
-/// to a side near an edge. It would leave by that face, and its body would hang there.
+/// Corrects the contact of a point that has been pressed in so deep that it is nearer to another face than to the one through which it
+/// entered: to the far side of a thin shape, or to a side near an edge. It would leave through that face, and its body would get stuck
+/// there.
 /// @param inside  a place of the point's body, before the substep, in the obstacle's frame
 /// @param hit     of the point, as meet() finds it
-/// @return  the contact with the face that the way from inside of the body meets; none: that is the same one, or `inside` does not tell
+/// @return  the contact with the face that the line from inside of the body meets; none: it is the same face, or `inside` does not tell
 std::optional<Hit> hit_of_entered_face(const Obstacle& obstacle, const Way& way, const Vector3f& inside,
                                        const Hit& hit, float allowance, float spacing) {
   const Vector3f along = way.from - inside;
@@ -203,7 +204,7 @@ class ObstacleContacts {
     return {box.low - Vector3f::Constant(by), box.high + Vector3f::Constant(by)};
   }
 
-  /// Sets what is near. @param box  around the obstacle  @return how far from the obstacle that reaches, metres
+  /// Sets near_ and where_edges_begin_. @param box  around the obstacle  @return how far from the obstacle they reach, metres
   float come_near(const Bounds<3>& box) {
     const float way = step_ * (rigid_.velocity.norm() + rigid_.spin.norm() * radius(box));
     const float reach = kNear * body_.spacing() + way;
@@ -212,24 +213,24 @@ class ObstacleContacts {
     return reach;
   }
 
-  /// The farthest that a point of the obstacle may be from what it turns about.
+  /// The largest possible distance of a point of the obstacle from its centre of rotation.
   float radius(const Bounds<3>& box) const {
     if (rigid_.spin.isZero(0)) return 0;
     return (box.low - rigid_.centre).cwiseAbs().cwiseMax((box.high - rigid_.centre).cwiseAbs()).norm();
   }
 
-  /// A box, and where points end whose ways may pass through it: they go hardly farther than the particles that hold them.
+  /// A box, and a box of the ends of all points that may pass through it: points hardly move farther than the particles that hold them.
   struct Passage {
     Bounds<3> box, ends;
   };
   Passage passage(const Bounds<3>& box) {
-    constexpr float kRounding = 1e-5f;  // of what is added up for a point
+    constexpr float kRounding = 1e-5f;  // of the sums that make up a point
     const Vector3f farthest = body_.box.low.cwiseAbs().cwiseMax(body_.box.high.cwiseAbs());
     const Vector3f reach = 2 * cells_.boxes().longest_way() + kRounding * farthest;
     return {box, {box.low - reach, box.high + reach}};
   }
 
-  /// Calls work(point, from, to) for a cell's points whose ways pass through the box.
+  /// Calls work(point, from, to) for those of a cell's points that may pass through the box.
   template <typename Work>
   void for_each_point_in(const Passage& passage, std::uint32_t cell, const Work& work) const {
     const ContactModel& model = *body_.model;
@@ -237,7 +238,7 @@ class ObstacleContacts {
     for (std::uint32_t i = model.first_of_cell[cell]; i < model.first_of_cell[cell + 1]; ++i) {
       const TouchPoint& point = model.touch_points[i];
       const Vector3f to = point.anchor.of(body_.ends);
-      if (!contains(passage.ends, to)) continue;  // without looking where it begins
+      if (!contains(passage.ends, to)) continue;  // decided without looking where it begins
       const Vector3f from = point.anchor.of(body_.positions);
       if ((from.cwiseMax(to).array() < box.low.array()).any() ||
           (from.cwiseMin(to).array() > box.high.array()).any())
@@ -251,8 +252,8 @@ class ObstacleContacts {
     return {obstacle_.to_own(from), obstacle_.to_own(to - carried)};
   }
 
-  /// On which side of a triangle the body is as a point of it, which may have been pressed through, tells: above 0 in front.
-  /// 0: the point is far from the triangle at both ends of its way, or passes beside it.
+  /// On which side of a triangle the body is, judged by a point that may have been pressed through: above 0 in front. 0: the point is far
+  /// from the triangle before and after the substep, or passes beside it.
   float side_of(const KnownTriangles& triangles, const EndCells::PointAtTriangle& near) const {
     const ObstacleTriangle triangle(obstacle_, triangles, near.triangle);
     if (!triangle.has_area()) return 0;
@@ -266,7 +267,7 @@ class ObstacleContacts {
     return triangle.height(near.inside);
   }
 
-  /// A mesh is wound one way or the other, closed around something or around a room: most of what is near it says on which side the body
+  /// A mesh may be wound either way, closed around a solid or around a room: the majority of near triangles tells on which side the body
   /// is.
   /// @return  1 or -1, as ObstacleTriangle::meet() takes it
   float front_of_triangles(const KnownTriangles& triangles) {
@@ -280,9 +281,9 @@ class ObstacleContacts {
     return body_.sides->side_of(rigid_.number, obstacle_.part, seen);
   }
 
-  /// Points meet the triangles near their way only.
+  /// Points only meet the triangles near their motion.
   void find_with_triangles(const KnownTriangles& triangles) {
-    // As bounds(), but quicker.
+    // The same as bounds(), but faster.
     const float reach =
         come_near(widened(to_world(obstacle_, triangles.boxes().bounds()), obstacle_.rounding));
     find_origin(triangles);
@@ -295,12 +296,12 @@ class ObstacleContacts {
     try_edges_of_triangles(triangles, reach);
   }
 
-  /// Of a plate of triangles the body is in front of one side and behind the other one, which a point that has been pressed into the plate,
-  /// or rests on it, would seem to have been pressed through.
-  /// @param begin  of one point's triangles, the last ones there are
+  /// Leaves out the far sides of plates. The body is in front of one side of a plate and behind the other. A point that has been pressed
+  /// into the plate, or rests on it, would seem to have been pressed through the far side.
+  /// @param begin  index of the first triangle of the last point
   void leave_out_far_sides(const KnownTriangles& triangles, std::size_t begin) {
     const auto near = std::span(cells_.near_triangles).subspan(begin);
-    // None of them face each other where all face nearly the same way, as those of a ground do.
+    // If all face nearly the same way, as those of a ground do, none face each other.
     const auto is_alike = [&](const EndCells::PointAtTriangle& at) {
       const KnownTriangles::Face &first = triangles.face(near[0].triangle),
                                  &own = triangles.face(at.triangle);
@@ -325,8 +326,8 @@ class ObstacleContacts {
               all.end());
   }
 
-  /// A small body can be pressed through triangles as a whole, with all that is inside of it: then the place from which it came tells on
-  /// which side of them it belongs.
+  /// Finds out whether the whole body, with all that is inside of it, has been pressed through triangles: small bodies can be. Then the
+  /// last place that it reached without passing through one tells on which side it belongs.
   void find_origin(const KnownTriangles& triangles) {
     const Vector3f now =
         obstacle_.to_own(inner_place(*body_.model, middle_cell(*body_.model), body_.positions));
@@ -343,7 +344,7 @@ class ObstacleContacts {
     sides.set_place(rigid_.number, obstacle_.part, !last || is_clear_of(triangles, now) ? now : *last);
   }
 
-  /// Whether a place is not just about to be pressed through a triangle.
+  /// Whether no triangle is so near that it might be about to press through.
   bool is_clear_of(const KnownTriangles& triangles, const Vector3f& place) const {
     const float margin = kPressedThrough * body_.spacing();
     bool clear = true;
@@ -368,13 +369,14 @@ class ObstacleContacts {
     return crossed;
   }
 
-  /// Of each point those near its way; if there are none, or its body is behind one, those that it has been pressed through, at some depth.
+  /// For each point: triangles near its motion; if there are none, or its body is behind one of them, also those that it has been pressed
+  /// through farther.
   void find_near_triangles(const KnownTriangles& triangles) {
     const float spacing = body_.spacing();
-    // What has been pressed through a triangle may be so far behind it, and still meets it.
+    // A point that has been pressed through a triangle may be this far behind it and still meets it.
     const Vector3f margin = Vector3f::Constant((kNear + kPressedThrough) * spacing + obstacle_.rounding);
     const Passage deep = passage(widened(near_, kDeepest * spacing));
-    // As far as that is known before they are seen.
+    // As far as it is known before the triangles are looked at.
     const float front = obstacle_.faces_bodies ? 1 : body_.sides->last_side_of(rigid_.number, obstacle_.part);
     cells_.near_triangles.clear();
     cells_.boxes().for_each_meeting(deep.box, [&](std::uint32_t cell) {
@@ -400,14 +402,14 @@ class ObstacleContacts {
     });
   }
 
-  /// Calls work(triangle) for those whose boxes meet a box.
+  /// Calls work(triangle) for triangles whose boxes meet `box`.
   template <typename Work>
   static void for_each_triangle(const KnownTriangles& triangles, const Bounds<3>& box, const Work& work) {
     if (overlap(box, triangles.boxes().bounds())) triangles.boxes().for_each_meeting(box, work);
   }
 
-  /// Those that part a point from the inside of its body, up to kDeepest from the point.
-  /// @param first  of the point's triangles that are there already
+  /// Adds triangles that separate a point from the inside of its body, up to kDeepest from the point.
+  /// @param first  index of the point's first triangle in the list
   void add_pressed_through(const KnownTriangles& triangles, EndCells::PointAtTriangle at, std::size_t first) {
     const Vector3f inwards = at.inside - at.from;
     const float share = std::min(1.0f, kDeepest * body_.spacing() / inwards.norm());
@@ -427,7 +429,7 @@ class ObstacleContacts {
                       });
   }
 
-  /// Whether the body seems to be behind a triangle: that may be the far side of a plate, and its near side not near the point.
+  /// Whether the body seems to be behind a triangle. It may be the far side of a plate whose near side is not near the point.
   bool is_behind_any(const KnownTriangles& triangles, std::span<const EndCells::PointAtTriangle> near,
                      float front) const {
     return std::ranges::any_of(near, [&](const EndCells::PointAtTriangle& at) {
@@ -441,7 +443,7 @@ class ObstacleContacts {
     const auto in_world = [&](const CornerSet::Point& corner) {
       return obstacle_.to_world({corner[0], corner[1], corner[2]});
     };
-    // In an order that does not depend on where the list of triangles begins.
+    // Sorted, so that the order does not depend on where the list of triangles begins.
     std::vector<CornerSet::Point>& near = cells_.near_corners;
     near.clear();
     for (const CornerSet::Point& corner : triangles.corners())
@@ -468,7 +470,7 @@ class ObstacleContacts {
     complete(contact, hit.end, contact.normal.dot(v), friction_, step_);
   }
 
-  /// Points of the edge that are in the body: it has to give way there.
+  /// Adds contacts for the points of the edge that are in the body.
   void try_edge(const ObstacleEdge& edge, float reach) {
     if (body_.spacing() <= edge.cells_above) return;
     const Vector3f from = obstacle_.rotation * edge.from + obstacle_.position;
@@ -484,12 +486,12 @@ class ObstacleContacts {
 
   Vector3f moved(const Vector3f& point) const { return point + step_ * rigid_.velocity_at(point); }
 
-  /// What cannot be costs no more than a look at a few boxes.
+  /// Rules out most points by a look at a few boxes.
   bool may_be_in_body(const Vector3f& point) const {
     return contains(where_edges_begin_, point) && cells_.finder().may_find(moved(point));
   }
 
-  /// Of triangles it is known already, and what is round has its edges within.
+  /// Triangles have been checked already, and round shapes have their edges inside.
   bool may_have_others_beside() const {
     return obstacle_.kind != ObstacleKind::kTriangles && obstacle_.rounding == 0 &&
            near_obstacles_.size() > 1;
@@ -501,7 +503,7 @@ class ObstacleContacts {
     return body_.model->is_flat() && cells_.beside.face_goes_on(corner, Vector3f::UnitZ());
   }
 
-  /// Not towards the far side of something thin, nor towards a face that has another shape behind it.
+  /// Changes a contact that leads to the far side of a thin shape, or through a face with another shape behind it.
   Hit turned_outwards(const Hit& hit, const Way& way, std::uint32_t cell, float allowance) {
     const Vector3f inside = obstacle_.to_own(inner_place(*body_.model, cell, body_.positions));
     if (const auto near = hit_of_entered_face(obstacle_, way, inside, hit, allowance, body_.spacing()))
@@ -511,7 +513,7 @@ class ObstacleContacts {
     return other ? Hit{other->normal, other->distance + allowance} : hit;
   }
 
-  /// @param along   the edge that has it; 0: a tip, in two dimensions a corner
+  /// @param along   the edge of the corner; 0: a tip, in two dimensions a corner
   /// @param radius  of the edge there, metres
   void try_corner(const Vector3f& corner, const Vector3f& along, float radius) {
     const Vector3f point = moved(corner);
@@ -543,9 +545,10 @@ class ObstacleContacts {
   float friction_;
   float step_;
   std::vector<SoftContact>& contacts_;
-  std::optional<Vector3f> origin_;  // in the obstacle's frame; none: the body is on the side on which it was
-  Bounds<3> near_{};                // around the obstacle, as far as anything that moves may come from
-  Bounds<3> where_edges_begin_{};   // of the obstacle that may be in the body at the substep's end
+  std::optional<Vector3f>
+      origin_;                     // in the obstacle's frame, if the body has been pressed through as a whole
+  Bounds<3> near_{};               // around the obstacle, as far as anything that moves may come from
+  Bounds<3> where_edges_begin_{};  // of the obstacle that may be in the body at the substep's end
 };
 
 }  // namespace
@@ -558,10 +561,10 @@ void find_contacts(const ContactBody& body, EndCells& cells, std::span<const Obs
 
 namespace {
 
-/// Where in its cell b's side of a contact is held, for an impulse and its reaction to be at one point at the
-/// substep's beginning: else they would turn the two bodies. What is on its way may be somewhat outside.
+/// Moves b's anchor of a contact within its cell, so that impulse and reaction act at one point at the substep's beginning; otherwise they
+/// would turn the two bodies. A point still on its way may be somewhat outside.
 Vector3f opposite(const ContactBody& b, const DeformedPlace& place, const Vector3f& point) {
-  constexpr float kFarthest = 0.5f;  // cells outside: farther out, shares grow large
+  constexpr float kFarthest = 0.5f;  // cells outside: farther out, shares become large
   const Matrix3f inverse = place.jacobian.inverse();
   Vector3f xi = place.xi;
   for (int i = 0; i < 3; ++i) {
@@ -575,7 +578,7 @@ Vector3f opposite(const ContactBody& b, const DeformedPlace& place, const Vector
 
 namespace {
 
-/// Cells reach 0.9 cells from their middles.
+/// A cell reaches 0.9 cells from its middle.
 bool is_folded(const ContactBody& body) {
   return may_be_folded(body, 0.5f * (kApartAtRest - 0.9f) * body.spacing());
 }
@@ -594,7 +597,7 @@ void find_contacts(const ContactBody& a, EndCells& cells_of_a, const ContactBody
     const Vector3f to = point.anchor.of(a.ends);
     if (!contains(b.box, to)) return;
     const auto is_apart = [&](std::uint32_t other) {
-      if (!itself) return true;  // `cell` is one of a's, which b need not have
+      if (!itself) return true;  // `cell` is one of a's, so b need not have it
       const Eigen::Vector3i off = lattice_b.cells[other] - lattice_b.cells[cell];
       return off.squaredNorm() > kApartAtRest * kApartAtRest ||
              are_parted(lattice_b, model.crack_sides, cell, other);

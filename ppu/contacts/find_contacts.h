@@ -1,5 +1,5 @@
 #pragma once
-// Where bodies would enter something in the coming substep.
+// Finds where bodies would enter obstacles or each other in the coming substep.
 
 #include <algorithm>
 #include <cstddef>
@@ -15,7 +15,7 @@
 
 namespace softcell::ppu {
 
-/// The cells of where a body will be, placed when somebody asks: most bodies need none.
+/// Search structures over the cells of a body at the substep's end, built on first use: most bodies need none.
 class EndCells {
  public:
   void begin(const ContactBody& body) {
@@ -27,13 +27,14 @@ class EndCells {
     is_placed_ = true;
     return finder_;
   }
-  /// Around cells on their ways to where they will be.
+  /// Boxes around the cells' motion to their ends.
   const CellBoxes& boxes() {
     if (!has_boxes_) boxes_.place(body_->lattice(), body_->positions, body_->ends);
     has_boxes_ = true;
     return boxes_;
   }
-  /// The first obstacle of triangles in a substep, the second and so on: each is likely to be the one of the substep before.
+  /// Call it for the first obstacle of triangles in a substep, then for the second and so on: each is likely to be the same as in the
+  /// substep before.
   /// @param longest  as KnownTriangles::see() has it  @return valid until the next call
   const KnownTriangles& triangles(const Obstacle& obstacle, float longest) {
     if (seen_ == triangles_.size()) triangles_.emplace_back();
@@ -42,18 +43,18 @@ class EndCells {
     return known;
   }
 
-  /// A touch point and a triangle that it may meet; in the obstacle's frame.
+  /// A touch point and a triangle that it may meet, in the obstacle's frame.
   struct PointAtTriangle {
     const TouchPoint* point;
     std::uint32_t triangle;
     Eigen::Vector3f from, to;  ///< before and after the substep
-    Eigen::Vector3f inside;    ///< a place well inside of the body near the point, before it
-    bool is_far_side = false;  ///< of a plate whose other side is nearer to the body
+    Eigen::Vector3f inside;    ///< a place well inside of the body near the point, before the substep
+    bool is_far_side = false;  ///< on the far side of a plate; the plate's other side is nearer to the body
   };
-  // For those who look for contacts with triangles, again and again without allocating.
+  // Kept for the functions that find contacts with triangles, so that they do not allocate again and again.
   std::vector<CornerSet::Point> near_corners;
   std::vector<PointAtTriangle> near_triangles;
-  Beside beside;  // the obstacle that is looked at
+  Beside beside;  // for the obstacle that is being looked at
 
  private:
   const ContactBody* body_ = nullptr;
@@ -61,24 +62,23 @@ class EndCells {
   CellBoxes boxes_;
   bool is_placed_ = false, has_boxes_ = false;
   std::vector<KnownTriangles> triangles_;
-  std::size_t seen_ = 0;  // of these, in this substep
+  std::size_t seen_ = 0;  // how many of these are used in this substep
 };
 
-/// Points of the body's surface, and its particles, in an obstacle, and the obstacle's edges in the body.
-/// Appends to `contacts`.
+/// Finds points of the body's surface, and its particles, in an obstacle, and edges of the obstacle in the body. Appends to `contacts`.
 /// @param cells  the body's
-/// @param near   the indices of the obstacles near the body, each of which is asked for once  @param obstacle  one of these
+/// @param near   the indices of all obstacles near the body; call it once for each of them  @param obstacle  one of these
 /// @param step   seconds
 void find_contacts(const ContactBody& body, EndCells& cells, std::span<const Obstacle> obstacles,
                    std::span<const std::uint32_t> near, std::uint32_t obstacle,
                    std::span<const ContactRigid> rigids, float step, std::vector<SoftContact>& contacts);
 
-/// Points of a's surface in b. Appends to `contacts`, as seen from a.
+/// Finds points of a's surface in b. Appends to `contacts`, as seen from a.
 /// @param cells_of_a, cells_of_b  the bodies'
 void find_contacts(const ContactBody& a, EndCells& cells_of_a, const ContactBody& b, EndCells& cells_of_b,
                    float step, std::vector<SoftContact>& contacts);
 
-/// Whether a body may touch itself. Else it need not be asked for.
+/// Whether a body may touch itself. If not, there is no need to look for such contacts.
 bool may_touch_itself(const ContactBody& body);
 
 }  // namespace softcell::ppu

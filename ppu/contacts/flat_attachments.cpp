@@ -44,7 +44,7 @@ void FlatAttachments::begin(InPlane& plane, const AttachedBody<3>& body) {
   plane.inverse_masses.resize(particles);
   for (const std::uint32_t i : plane.held) {
     plane.positions[i] = FlatLayer::lower(body.positions, i);
-    plane.inverse_masses[i] = 0.5f * body.inverse_masses[2 * i];  // of two of half its mass
+    plane.inverse_masses[i] = 0.5f * body.inverse_masses[2 * i];  // two particles of half its mass
   }
 }
 
@@ -104,7 +104,7 @@ void FlatAttachments::take_back_spin() {
   raise();
 }
 
-/// Velocities and pushes as contacts have left them.
+/// Copies the velocities and pushes that contacts have left to the plane.
 void FlatAttachments::lower() {
   for (std::size_t i = 0; i < planes_.size(); ++i)
     for (const std::uint32_t p : planes_[i].held) {
@@ -117,7 +117,7 @@ void FlatAttachments::lower() {
   }
 }
 
-/// What has changed since lower().
+/// Adds what has changed since lower() to the layer.
 void FlatAttachments::raise() const {
   for (std::size_t i = 0; i < planes_.size(); ++i)
     for (const std::uint32_t p : planes_[i].held) {

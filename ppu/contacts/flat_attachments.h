@@ -1,6 +1,6 @@
 #pragma once
-// Attachments in two dimensions among contacts of flat layers (flat_layer.h): what they do to a particle in the plane, both particles of its
-// column get.
+// Attachments in two dimensions among contacts of flat layers (flat_layer.h): both particles of a column get what the attachment does to
+// the particle in the plane.
 
 #include <Eigen/Core>
 #include <cstdint>
@@ -14,9 +14,9 @@ namespace softcell::ppu {
 /// Used by one thread. A coupling fills it before each substep.
 class FlatAttachments final : public AttachmentSolver<3> {
  public:
-  /// Empty, with the room that it has.
+  /// Removes all attachments and keeps the allocated room.
   void clear();
-  /// Its bodies and rigid body by their numbers in the stage.
+  /// The attachment's bodies and rigid body have their numbers in the stage.
   void add(const AttachmentInStep<2>& attachment);
 
   bool empty() const override { return in_plane_.empty(); }
@@ -38,7 +38,7 @@ class FlatAttachments final : public AttachmentSolver<3> {
   void take_back_spin() override;
 
  private:
-  /// A body of the stage in the plane: only its held particles are there.
+  /// A body of the stage in the plane: only its held particles are set.
   struct InPlane {
     std::vector<std::uint32_t> held;
     std::vector<Eigen::Vector2f> positions, velocities, pushes;
@@ -52,7 +52,7 @@ class FlatAttachments final : public AttachmentSolver<3> {
   void raise() const;
 
   Attachments<2> in_plane_;
-  std::vector<InPlane> planes_;  // of each body of the stage, or of fewer
+  std::vector<InPlane> planes_;  // for each body of the stage, or for the first ones
   std::vector<AttachedBody<2>> bodies_;
   std::vector<AttachedRigid2d> rigids_;
   std::vector<HeldParticle<2>> held_;

@@ -14,13 +14,13 @@ using Eigen::Vector3d;
 using Eigen::Vector3f;
 using Six = LinkRows::Six;
 
-// Until an iteration changes no impulse by more than a share of the largest, or at most so many.
+// Iterations end when none changes an impulse by more than this share of the largest one, or after so many.
 constexpr int kMostIterations = 100;
 constexpr double kSettled = 1e-3;
-// Of its own mobility, what joints leave of a row: below that they hold its members alone. Rows that nearly contradict joints would move what
-// these leave, and fast.
+// As a share of the row's own mobility: if joints leave less of it, the joints alone hold the row's members. Rows that nearly contradict
+// joints would move the rest, and fast.
 constexpr double kHeldByJoints = 1e-2;
-// Likewise of joints among each other.
+// Softness of joints among each other, likewise.
 constexpr double kJointGivesWay = 1e-5;
 
 Six velocity_of(const ContactRigid& rigid) {
@@ -101,7 +101,7 @@ void LinkRows::add(const JointRow& joint) {
   Row made;
   made.a = side(joint.a, along(joint.of_a), made);
   made.b = side(joint.b, along(joint.of_b), made);
-  if (!(made.mobility > 0)) return;  // of turning, of bodies that do not turn
+  if (!(made.mobility > 0)) return;  // a rotation of bodies that do not rotate
   made.softness = double{joint.softness} + kJointGivesWay * made.mobility;
   made.target = double{joint.target};
   const bool is_motor = joint.is_limited() && joint.least != 0 && joint.most != 0;
@@ -126,7 +126,7 @@ bool LinkRows::share_member(const Row& one, const Row& other) {
   return is_of(one.a.member, other) || is_of(one.b.member, other);
 }
 
-/// What an impulse of one changes of the speed of the other.
+/// The change of one row's speed by an impulse of the other.
 double LinkRows::coupling(const Row& one, const Row& other) {
   double sum = 0;
   for (const Side* const side : {&one.a, &one.b})
@@ -147,7 +147,7 @@ void LinkRows::push(const Row& row, double impulse) {
     if (side->member != kOutside) members_[side->member].now += impulse * side->change;
 }
 
-/// How guarded rows act on each other: less than they would, as joints take a part.
+/// Computes how guarded rows act on each other: less than without joints, as joints take a part.
 void LinkRows::prepare() {
   const std::size_t joints = joints_.size(), guarded = guarded_.size();
   factor(joints_factor_, joints, [&](std::size_t i) -> const Row& { return joints_[i]; });
@@ -194,7 +194,7 @@ void LinkRows::solve(Rows rows) {
   for_each_row([&](const Row& row) { push(row, row.impulse); });
 }
 
-/// The impulse with which a guarded row would have its target, if nothing limited it.
+/// The impulse with which a guarded row would reach its target, if nothing limited it.
 double LinkRows::wanted(std::size_t row) const {
   const double acts = acts_[row * (guarded_.size() + 1)];
   return acts > kHeldByJoints * guarded_[row].mobility
@@ -202,7 +202,7 @@ double LinkRows::wanted(std::size_t row) const {
              : 0;
 }
 
-/// Of guarded rows: by impulses that only part what touches, friction, and as far as limits let them.
+/// Iterates over guarded rows: contacts only push apart, with friction, and limited joints stay within their limits.
 void LinkRows::iterate(Rows rows) {
   const std::size_t n = guarded_.size();
   double most = 0, largest_change = 0;

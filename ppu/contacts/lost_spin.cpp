@@ -37,7 +37,7 @@ void LostSpin::add(std::span<const ContactBody> bodies, std::uint32_t a, std::ui
   Spinning& first = spinning(bodies, a);
   Matrix3d inertia = first.inertia;
   if (b != a) inertia += spinning(bodies, b).inertia;
-  const Vector3d turn = turning::turn_of(inertia, given);  // none: both are pressed to one line
+  const Vector3d turn = turning::turn_of(inertia, given);  // zero if both bodies are pressed to one line
   first.turn -= turn;
   if (b != a) of_bodies_[b].turn -= turn;
 }

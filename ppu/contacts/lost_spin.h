@@ -1,15 +1,15 @@
 #pragma once
-// Angular momentum that contacts take or give, and its return.
+// Measures the angular momentum that contacts add or remove by error, and corrects it.
 //
-// A contact's two impulses are equal and opposite. They act on two points, one of each body, which should be in one place at the step's
-// beginning. The other body's point is found by a few steps of an iteration, and held no farther than half a cell outside of its cell, so the
-// two are somewhat apart:
+// A contact's two impulses are equal and opposite. They act on two points, one of each body, which should coincide at the step's beginning.
+// The other body's point is found by a few steps of an iteration, and kept within half a cell outside of its cell, so the two are somewhat
+// apart:
 //
 //     a  --o--->         lost = (x_a - x_b) x J
 //           \  gap
 //     b  <---o--
 //
-// Both bodies of a pair get the same small turn about their centres of mass, so that nothing is lost. At rest nothing is.
+// Both bodies of a pair get the same small turn about their centres of mass, so that the sum is right again. Bodies at rest lose nothing.
 
 #include <Eigen/Core>
 #include <cstdint>
@@ -25,11 +25,11 @@ class LostSpin {
  public:
   void begin(std::size_t bodies);
 
-  /// What the contacts of a pair have given both bodies together. @param b  may be a
+  /// Adds the angular momentum that the contacts of a pair have given both bodies together. @param b  may be a
   void add(std::span<const ContactBody> bodies, std::uint32_t a, std::uint32_t b,
            const Eigen::Vector3d& given);
 
-  /// Takes it away again, from the velocities of all bodies of such pairs.
+  /// Removes it from the velocities of all bodies of these pairs.
   void take_back(std::span<ContactBody> bodies) const;
 
  private:

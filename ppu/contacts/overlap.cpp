@@ -46,7 +46,7 @@ class OverlapSearch {
   }
 
  private:
-  /// Of a point from the obstacle, in the world.
+  /// Separation of a point in the world from the obstacle.
   Separation separation_of(const Vector3f& point) const {
     Separation result;
     if (obstacle_.kind == ObstacleKind::kTriangles) {
@@ -66,12 +66,12 @@ class OverlapSearch {
     return result;
   }
 
-  /// Something thin between two points of the body is nearest to one of them within the body.
+  /// For a thin obstacle between points of the body: its nearest point to one of them lies within the body.
   std::optional<Overlap> try_nearest(const Vector3f& point, const Separation& from) const {
     constexpr float kFarthest = 2, kRounding = 1e-3f;  // cells
     if (from.distance > kFarthest * spacing_) return {};
     const Vector3f nearest = point - from.distance * from.normal;
-    // Off the edges of a hull, separation() knows less than the distance.
+    // Near edges of a hull, separation() underestimates the distance.
     if (separation_of(nearest).distance > kRounding * spacing_ || !is_in_body(nearest, 0)) return {};
     return Overlap{nearest, from.normal};
   }
@@ -92,7 +92,7 @@ class OverlapSearch {
     return found;
   }
 
-  /// @param rounding  metres that the point may be outside
+  /// @param rounding  metres by which the point may be outside
   bool is_in_body(const Vector3f& point, float rounding) const {
     const auto place = cells_.find(point, [](std::uint32_t) { return true; });
     if (!place) return false;

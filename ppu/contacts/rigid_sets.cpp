@@ -46,11 +46,11 @@ void RigidSets::join(std::uint32_t rigid, std::uint32_t other) {
   together_.unite(rigid, other);
 }
 
-/// Sets in the order of their first members, members in that of their numbers.
+/// Sorts sets by their first members, and members by their numbers.
 void RigidSets::arrange(ContactWorker& worker) {
   const auto count = static_cast<std::uint32_t>(rigids_.size());
   for (std::uint32_t i = 0; i < count; ++i)
-    if (named_[i]) ++number_in_[together_.find(i)];  // of a set's first member: how many there are
+    if (named_[i]) ++number_in_[together_.find(i)];  // at a set's first member: the number of members
   for (std::uint32_t i = 0; i < count; ++i) {
     if (!named_[i]) continue;
     const std::uint32_t first = together_.find(i);

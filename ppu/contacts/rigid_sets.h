@@ -1,5 +1,5 @@
 #pragma once
-// The rigid bodies of a substep that impulses move, for a ContactWorker: in sets, so that soft bodies which touch rigid bodies of
+// Groups the rigid bodies of a substep that impulses move into sets for a ContactWorker, so that soft bodies which touch rigid bodies of
 // different sets can be solved at the same time.
 
 #include <Eigen/Core>
@@ -14,36 +14,36 @@
 
 namespace softcell::ppu {
 
-/// Used by one thread, in the order begin(), join() as often as needed, arrange(), and then the others. Allocates when there are more
+/// Used by one thread: call begin(), join() as often as needed, arrange(), and then the other functions. Allocates when there are more
 /// rigid bodies than ever before.
 class RigidSets {
  public:
   static constexpr std::uint32_t kNone = ~0u;
-  /// Of a set, besides the one that nothing moves.
+  /// The most members of a set, besides the one that nothing moves.
   static constexpr std::uint32_t kMost = spu::kSolveMaxRigids - 1;
 
-  /// @param rigids  stay where they are until the last call
+  /// @param rigids  must stay in place until the last call
   void begin(std::span<ContactRigid> rigids);
-  /// One soft body holds on to both; they may be the same. @pre impulses move both
+  /// One soft body touches or is attached to both; they may be the same. @pre impulses move both
   void join(std::uint32_t rigid, std::uint32_t other);
-  /// Finds room in the worker's memory for all that join() has named, but for sets of more than kMost.
+  /// Places all bodies named by join() in the worker's memory, except for sets of more than kMost.
   void arrange(ContactWorker& worker);
 
   std::uint32_t sets() const { return static_cast<std::uint32_t>(sets_.size()); }
-  /// kNone: join() has not named the rigid body, or its set has no room.
+  /// kNone: join() has not named the rigid body, or its set is too large.
   std::uint32_t set_of(std::uint32_t rigid) const { return set_of_[rigid]; }
-  /// The number of a rigid body in its set. What nothing moves has the last number in any set.
+  /// The number of a rigid body in its set. A body that nothing moves has the last number in any set.
   std::uint16_t number_in(std::uint32_t set, std::uint32_t rigid) const;
-  /// A set as the worker has it.
+  /// A set in the worker's memory.
   std::span<spu::SolveRigid> of(std::uint32_t set) const;
 
-  /// Gives the worker velocities as they are now.
+  /// Copies the present velocities to the worker.
   void put() const;
-  /// Makes velocities what the worker has made of them.
+  /// Copies the velocities back from the worker.
   void take() const;
 
  private:
-  /// In `members_`; in the worker's memory one that nothing moves follows.
+  /// A range of `members_`; in the worker's memory one that nothing moves follows.
   struct Set {
     std::uint32_t first = 0, count = 0;
   };

@@ -11,19 +11,19 @@ namespace {
 
 using Eigen::Vector3f;
 
-// A load is felt so many cells deep before it is spread: one behind the touched one is crushed first.
+// A load reaches this many cells deep before it spreads: a cell behind the touched one is crushed first.
 constexpr int kCellsBehind = 3;
-// Of the volume at rest: so much of theirs these cells keep. With 0.5, below which cells are crushed, edges get a fifth of a cell deep, with
-// 0.6 an eighth, and no less deep with more.
+// These cells keep this share of their volume at rest. With 0.5, below which cells are crushed, edges get a fifth of a cell deep; with 0.6
+// an eighth, and no less with more.
 constexpr float kLeastAtEdges = 0.6f;
-// What would be as deep at the substep's end has passed the touched cell.
+// An edge that would be deeper than this at the substep's end has passed the touched cell.
 constexpr float kDeep = 0.5f;  // cells
 
-/// Of the area across the body, on which it would lie on a floor: what touches more than a third of it is no edge.
+/// Whether cells are less than a third of the area on which the body would lie on a floor. If more is touched, it is no edge.
 bool are_few(std::size_t cells, const ContactBody& body) {
   const double touched = 3 * static_cast<double>(cells);
   const auto particles = static_cast<double>(body.positions.size());
-  // A flat body has each particle twice, and lies on a line.
+  // A flat body has each particle twice, and touches a floor along a line.
   return body.model->is_flat() ? touched * touched < particles / 2
                                : touched * touched * touched < particles * particles;
 }

@@ -1,9 +1,9 @@
 #pragma once
-// Edges and tips that press on few cells of a body.
+// Handles edges and tips that press on few cells of a body.
 //
-// All of the body's weight then hangs on a row of cells. These would be crushed, and turned inside out by a fall from its own height: shape
-// matching holds the row by its neighbours only. What is inside out has no inside in which others are found, so the edge would go on through
-// the body. So where something is sharp a body goes on as a whole no farther than the cells behind the contact can be squeezed (bounces.h).
+// All of the body's weight then rests on a row of cells. A fall from the body's own height would crush them and turn them inside out: in
+// shape matching only the neighbours hold the row. An inverted cell has no inside in which others are found, so the edge would pass through
+// the body. So at a sharp contact a body moves on as a whole no farther than the cells behind the contact can be squeezed (bounces.h).
 
 #include <Eigen/Core>
 #include <cstdint>
@@ -25,13 +25,13 @@ float room_to_squeeze(const ContactBody& body, const DeformedPlace& place, const
 /// Used by one thread. Allocates when a body has more contacts than ever before.
 class SharpContacts {
  public:
-  /// A body that lies on much else besides is not carried by an edge. Takes SoftContact::room off contacts that are not sharp.
-  /// @param contacts  of the body with rigid bodies, all of them
-  /// @return          whether some are
+  /// Removes SoftContact::room from contacts that are not sharp. An edge does not carry a body that also lies on much else.
+  /// @param contacts  all contacts of the body with rigid bodies
+  /// @return          whether some are sharp
   bool keep(std::span<SoftContact> contacts, const ContactBody& body);
 
  private:
-  std::vector<std::uint32_t> cells_;  // that contacts have
+  std::vector<std::uint32_t> cells_;  // cells with contacts
 };
 
 }  // namespace softcell::ppu

@@ -12,13 +12,14 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-// Cells in a substep: what moves farther where it was held was not.
+// Cells in a substep: contacts that let a member move farther did not hold it.
 constexpr double kHeld = 0.1;
-// And of what it would move without: less than that was held.
+// As a share of the motion without contacts: a member that moves less was held.
 constexpr double kLeft = 0.1;
-// Cells in a substep: by how much engines let what is joined move, of what soft bodies do to it, before light things give way.
+// Cells in a substep: how far engines may let joined bodies move under what soft bodies do to them, before light bodies give way.
 constexpr double kEngineBears = 0.03;
-// Of what joints do to members that nothing presses, which takes back errors, too. The rest engines find by themselves.
+// The share of what joints do to members that nothing presses on, which includes their correction of errors. Engines find the rest by
+// themselves.
 constexpr double kGivenOfStanding = 0.5;
 
 }  // namespace
@@ -29,8 +30,8 @@ void SupportedSet::begin(std::span<ContactRigid> rigids, std::span<const std::ui
   rows_.clear(), spent_.clear();
 }
 
-/// Of joints, so that they raise nothing that is pressed by more than kHeld: a chain that its engine lets hang far too long would throw what
-/// lies on it into the air.
+/// Limits the joints' targets so that they raise no pressed member by more than kHeld: a chain that its engine lets hang far too long would
+/// throw what lies on it into the air.
 void SupportedSet::limit_targets(std::span<const Press> presses) {
   links_.move_by_targets();
   double fastest = 0;
@@ -47,7 +48,7 @@ void SupportedSet::limit_targets(std::span<const Press> presses) {
     for (Row& row : links_.joints()) row.target *= most / fastest;
 }
 
-/// With what soft bodies do to members that stand as they do now.
+/// Adds the impulses of soft bodies on members with their present velocities.
 void SupportedSet::load(std::span<const Press> presses) {
   for (const Press& press : presses) {
     const std::size_t number = links_.member_of(press.rigid);
@@ -68,7 +69,7 @@ void SupportedSet::load(std::span<const Press> presses) {
   }
 }
 
-/// Joints, limits that are reached, motors that are strong enough, and touches that are loaded.
+/// Collects joints, stops that are reached, motors that are strong enough, and contacts that are loaded.
 void SupportedSet::find_what_holds() {
   for (Row& row : links_.joints()) rows_.push_back(&row);
   for (const LinkRows::Limited& limited : links_.limited()) {
@@ -109,11 +110,11 @@ bool SupportedSet::hold(std::span<const Press> presses, float step) {
   spend();
   for (std::size_t i = 0; i < standing_.size(); ++i)
     if (standing_[i].pressed) hold_member(i);
-  for (Member& member : links_.members()) member.impulse.setZero();  // that was a guess
+  for (Member& member : links_.members()) member.impulse.setZero();  // it was an estimate
   return true;
 }
 
-/// Velocities of members with all that motors have, if loads take that: they hold nothing then, as weak ones do not.
+/// Velocities of members if loads use up all that motors have: such a motor holds nothing more.
 void SupportedSet::spend() {
   for (std::size_t i = 0; i < standing_.size(); ++i) links_.members()[i].now = standing_[i].velocity;
   if (spent_.empty()) return;
@@ -122,7 +123,7 @@ void SupportedSet::spend() {
   for (std::size_t i = 0; i < rows_.size(); ++i) links_.push(*rows_[i], values_[i]);
 }
 
-/// Finds the impulses by which rows go on as where members stand.
+/// Finds the impulses with which rows keep the speeds that they have without loads.
 void SupportedSet::keep_standing() {
   for (std::size_t i = 0; i < rows_.size(); ++i) values_[i] = rows_[i]->stands - links_.speed(*rows_[i]);
   factor_.solve(values_);
@@ -139,7 +140,7 @@ void SupportedSet::hold_member(std::size_t number) {
   };
   Eigen::Matrix<double, 6, 6> mobility;
   for (int axis = 0; axis < 6; ++axis) {
-    // What an impulse changes of speeds of rows is what their impulses change of the member.
+    // The changes of the rows' speeds by an impulse equal the changes of the member by the rows' impulses.
     for (std::size_t i = 0; i < rows_.size(); ++i) values_[i] = change_by(*rows_[i])[axis];
     factor_.solve(values_);
     Six change = LinkRows::change_of_free(rigid, Six::Unit(axis));
@@ -170,7 +171,7 @@ void SupportedSet::give_impulses() {
   }
 }
 
-/// m/s: how much touches that hold differ from where members stand.
+/// m/s: how much the holding contacts' speeds differ from those without loads.
 double SupportedSet::fastest() const {
   double most = 0;
   for (const Row* const row : std::span(rows_).subspan(first_touch_))
@@ -178,8 +179,8 @@ double SupportedSet::fastest() const {
   return most;
 }
 
-/// Of what soft bodies do to joints. An engine that sees nothing of it takes back errors of joints as if nothing lay on them, and so presses what
-/// they hold into soft bodies; one that sees all of it lets light bodies go a part of the way.
+/// The engine's share of what soft bodies do to joints. An engine that sees none of it corrects errors of joints as if nothing lay on them,
+/// and so presses the joined bodies into soft ones; one that sees all of it lets light bodies give way in part.
 double SupportedSet::share_of_engine() const {
   double mass = 0;
   Vector3d impulse = Vector3d::Zero();
@@ -191,7 +192,7 @@ double SupportedSet::share_of_engine() const {
   return impulse.norm() > most ? most / impulse.norm() : 1;
 }
 
-/// Members as soft bodies move them, if rows do no more than where members stand.
+/// Sets members' velocities with the impulses of soft bodies, if rows do no more than without loads.
 void SupportedSet::load_standing() {
   for (std::size_t i = 0; i < standing_.size(); ++i) {
     Member& member = links_.members()[i];
@@ -200,14 +201,14 @@ void SupportedSet::load_standing() {
   links_.for_each_row([](Row& row) { row.impulse = row.stands_by; });
 }
 
-/// Members and rows as soft bodies have loaded them.
+/// Solves members and rows with the loads of soft bodies.
 void SupportedSet::solve_loaded() {
   load_standing();
   const double falls = fastest();
   links_.solve();
-  // Soft bodies have been solved as if nothing moved along these rows. What moves a little there, of a table on many legs, is what iterations
-  // have left; and a crate that is a hundredth of them would fly away with what they have got from it, if then it slides or is lifted. In both
-  // cases what it lies on keeps it for this substep.
+  // Contacts of soft bodies were solved as if nothing moved along these rows. A small motion there, for example of a table on many legs, is
+  // only what iterations have left. And a crate of a hundredth of the soft bodies' mass would fly away with the impulse from them if it
+  // then slides or is lifted. In both cases the supports hold their bodies for this substep.
   const double moves = fastest();
   if (moves > kHeld * cell_a_substep_ || (all_stick_ && moves < kLeft * falls)) {
     load_standing();
@@ -219,7 +220,7 @@ void SupportedSet::solve_loaded() {
   }
 }
 
-/// Where members stand, and as soft bodies have loaded them, as if rows that are left to the engine were not there.
+/// Solves members without loads, and then with the loads of soft bodies, as if the rows that are left to the engine did not exist.
 void SupportedSet::solve_without_engine() {
   for (std::size_t i = 0; i < standing_.size(); ++i)
     standing_[i].impulse = std::exchange(links_.members()[i].impulse, Six::Zero());
@@ -254,7 +255,7 @@ void SupportedSet::give_all() {
   });
 }
 
-/// Of what rows do to each member, not of each row's impulse: where joints contradict each other these are large, and make up for each other.
+/// Gives the sums for each member, not each row's impulse: if joints contradict each other, these impulses are large and cancel.
 void SupportedSet::give_part() {
   const double left = share_of_engine();
   for (std::size_t i = 0; i < standing_.size(); ++i) {

@@ -1,5 +1,5 @@
 #pragma once
-// Rigid bodies that touch or are joined, and what they lie on or hang from.
+// A set of rigid bodies that touch or are joined, with the bodies that they lie on or hang from.
 
 #include <Eigen/Core>
 #include <cstddef>
@@ -14,47 +14,47 @@
 
 namespace softcell::ppu {
 
-/// What a soft body is about to do to a rigid one.
+/// A soft body that is about to press on a rigid one.
 struct Press {
   std::uint32_t rigid = 0;  ///< its index; impulses move it
   Eigen::Vector3f point{0, 0, 0};
   Eigen::Vector3f normal{0, 1, 0};    ///< from the rigid body to the soft one
-  float mass = 0;                     ///< kg, of what there is of the soft body
-  Eigen::Vector3f velocity{0, 0, 0};  ///< m/s, likewise
+  float mass = 0;                     ///< kg: effective mass of the soft body at that point
+  Eigen::Vector3f velocity{0, 0, 0};  ///< m/s, of the soft body at that point
   float friction = 0;                 ///< of the two together
-  float spacing = 0;                  ///< metres, of its cells
+  float spacing = 0;                  ///< metres, of the soft body's cells
 };
 
-/// A few rigid bodies: which of their touches and joints soft ones load, and what these leave of a body's mobility. Used by one thread, in the
-/// order of its functions. Allocates when there are more bodies, touches or joints than ever before.
+/// A few rigid bodies. Finds which of their contacts and joints are loaded by soft bodies, and what mobility these leave. Call its
+/// functions in order; used by one thread. Allocates when there are more bodies, contacts or joints than ever before.
 class SupportedSet {
  public:
-  /// @param rigids   all there are; stay where they are until give_support()
+  /// @param rigids   all rigid bodies; must stay in place until give_support()
   /// @param members  the indices of those of the set; impulses move them
   void begin(std::span<ContactRigid> rigids, std::span<const std::uint32_t> members);
   /// As LinkRows::add(). @param step  seconds
   void add(const RigidTouch& touch, float step) { links_.add(touch, step); }
   void add(const JointRow& joint) { links_.add(joint); }
-  /// Finds which touches the presses on members load, and sets ContactRigid::held of those that are pressed on, and the velocities which
-  /// that leaves them. @return whether anything holds them
+  /// Finds which contacts and joints the presses on members load. Sets ContactRigid::held of the pressed members, and their velocities with
+  /// the loaded rows. @return whether anything holds them
   bool hold(std::span<const Press> presses, float step);
 
-  /// What a contact has given to a member, kg m/s, at a place in the world. Of others without effect.
+  /// Adds an impulse of a soft body's contact on a member, kg m/s, at a place in the world. Ignored for other rigid bodies.
   void add_impulse(std::uint32_t rigid, const Eigen::Vector3f& point, const Eigen::Vector3f& impulse);
-  /// Gives members the velocities that these impulses make of theirs, as if nothing held them.
+  /// Gives members the velocities that these impulses cause, as if nothing held them.
   void give_impulses();
-  /// After that of all sets: what they lie on or hang from stops them.
+  /// Call it after give_impulses() of all sets: stops members at the bodies that they lie on or hang from.
   void give_support();
 
  private:
   using Six = LinkRows::Six;
   using Row = LinkRows::Row;
   using Member = LinkRows::Member;
-  /// Of a member.
+  /// What is kept for each member.
   struct Standing {
     bool pressed = false;
-    Six velocity = Six::Zero();  // on what it lies on, without soft bodies
-    Six impulse = Six::Zero();   // of soft bodies
+    Six velocity = Six::Zero();  // with its supports, without soft bodies
+    Six impulse = Six::Zero();   // from soft bodies
   };
 
   void limit_targets(std::span<const Press> presses);
@@ -73,13 +73,13 @@ class SupportedSet {
 
   LinkRows links_;
   std::vector<Standing> standing_;
-  double cell_a_substep_ = 0;    // m/s, of the smallest cells that press
-  std::vector<Row*> rows_;       // those that hold members: joints, then guarded ones
-  std::size_t first_touch_ = 0;  // of rows_
-  std::vector<Row*> spent_;      // of motors that are too weak for their load
-  bool all_stick_ = true;        // touches of rows_
+  double cell_a_substep_ = 0;    // m/s: one of the smallest cells that press, per substep
+  std::vector<Row*> rows_;       // rows that hold members: joints, then guarded ones
+  std::size_t first_touch_ = 0;  // index in rows_
+  std::vector<Row*> spent_;      // rows of motors that are too weak for their load
+  bool all_stick_ = true;        // no contact of rows_ slides
   SkylineFactor factor_;         // of rows_
-  std::vector<double> values_;   // of each of rows_
+  std::vector<double> values_;   // one for each of rows_
 };
 
 }  // namespace softcell::ppu

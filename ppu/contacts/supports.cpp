@@ -9,9 +9,9 @@
 namespace softcell::ppu {
 namespace {
 
-// A part is a body with all that is joined to it, up to so many; of what is larger each body is a part.
+// A part is a body with all bodies joined to it, up to so many; larger assemblies are split into single bodies.
 constexpr std::size_t kMostJoined = 64;
-// Parts; of larger heaps each is solved as if only what nothing moves touched it.
+// Parts in a set; in larger heaps each part is solved as if only static bodies touched it.
 constexpr std::size_t kMostTogether = 6;
 
 }  // namespace
@@ -46,7 +46,7 @@ void Supports::hold(std::span<ContactRigid> rigids, const RigidLinks& links, std
   }
 }
 
-/// Which bodies are a part, by its lowest index, and which parts touch.
+/// Finds the part of each body, named by its lowest index, and the parts that touch.
 void Supports::find_parts(std::span<const ContactRigid> rigids, const RigidLinks& links) {
   const auto moves = [&](std::uint32_t rigid) {
     return rigid != JointRow::kWorld && rigids[rigid].inverse_mass > 0;
@@ -81,7 +81,7 @@ void Supports::look_at(std::span<ContactRigid> rigids, const RigidLinks& links,
   if (count_ == sets_.size()) sets_.emplace_back();
   SupportedSet& looked_at = sets_[count_];
   looked_at.begin(rigids, set_);
-  // Of two members their link comes once. That of a member to what moves and is none is left out.
+  // A link between two members is added once. A link to a moving body that is no member is left out.
   const auto counts = [&](std::uint32_t rigid, const auto& link) {
     const std::uint32_t other = link.a == rigid ? link.b : link.a;
     if (other == JointRow::kWorld || rigids[other].inverse_mass == 0) return true;

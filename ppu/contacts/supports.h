@@ -1,11 +1,12 @@
 #pragma once
-// What rigid bodies lie on or hang from while soft ones press on them.
+// Includes the bodies that rigid bodies lie on or hang from while soft bodies press on them.
 //
-// Their engine solves that, and contacts with soft bodies are solved before. A crate on a floor would get out of the way of a heavy body as if
-// the floor were not there, and only then be stopped by it: the lighter it is, the deeper the body sinks onto it. So for contacts with soft
-// bodies a rigid one moves as what it lies on lets it: the touches that the press loads hold it, in both directions, and across as long as they
-// do not slide, as sequential impulses tell. In the end their impulses on what soft bodies have done are found by the same, and the engine
-// has nothing left to stop. Joints hold it likewise; of those the engine is left a part.
+// The rigid bodies' engine solves their contacts, but contacts with soft bodies are solved before. A crate on a floor would give way to a
+// heavy soft body as if the floor were not there, and only then be stopped by it: the lighter the crate, the deeper the soft body sinks
+// onto it. So in contacts with soft bodies a rigid body moves only as its supports let it: the contacts that the load presses on hold it in
+// both directions, and across as long as they do not slide, which sequential impulses tell. In the end the supports' impulses against what
+// soft bodies have done are found in the same way, and the engine has nothing left to stop. Joints hold rigid bodies likewise; a part of
+// their load is left to the engine.
 
 #include <Eigen/Core>
 #include <cstdint>
@@ -19,28 +20,28 @@
 
 namespace softcell::ppu {
 
-/// Used by one thread, in each substep in the order hold(), add_impulse(), release(). Allocates when there are more bodies or touches than
-/// ever before.
+/// Used by one thread; in each substep call hold(), add_impulse(), release(). Allocates when there are more bodies or contacts than ever
+/// before.
 class Supports {
  public:
-  /// Sets ContactRigid::held of those that are pressed on and lie on something or are joined to it, and their velocities to what that leaves of
-  /// them.
-  /// @param rigids  stay where they are until release()  @param step  seconds
+  /// Sets ContactRigid::held of bodies that soft ones press on and that lie on something or are joined to it, and their velocities to those
+  /// with their supports.
+  /// @param rigids  must stay in place until release()  @param step  seconds
   void hold(std::span<ContactRigid> rigids, const RigidLinks& links, std::span<const Press> presses,
             float step);
 
   bool empty() const { return count_ == 0; }
 
-  /// What a contact has given to a rigid body, kg m/s, at a place in the world. Of one that is in no set without effect.
+  /// Adds an impulse of a soft body's contact on a rigid body, kg m/s, at a place in the world. Ignored if the body is in no set.
   /// @param rigid  its index
   void add_impulse(std::uint32_t rigid, const Eigen::Vector3f& point, const Eigen::Vector3f& impulse);
 
-  /// Gives rigid bodies the velocities with which their engine is to go on: by the impulses of soft bodies, and of what they lie on. What moves
-  /// of the latter gets those as well.
+  /// Gives rigid bodies the velocities with which their engine goes on: they include the impulses of soft bodies and of supports. Supports
+  /// that can move get the opposite impulses.
   void release();
 
  private:
-  /// Indices of touches or joints by their rigid bodies.
+  /// Indices of contacts or joints by their rigid bodies.
   struct OfRigid {
     std::vector<std::uint32_t> first, links;
     std::span<const std::uint32_t> of(std::uint32_t rigid) const {
@@ -51,12 +52,12 @@ class Supports {
   void look_at(std::span<ContactRigid> rigids, const RigidLinks& links, std::span<const Press> presses,
                float step);
 
-  DisjointSets together_;               // rigid bodies that hold each other
-  std::vector<std::uint32_t> part_of_;  // of each rigid body: the lowest of those that are joined to it
-  std::vector<std::uint32_t> joined_;   // how many these are
+  DisjointSets together_;               // sets of rigid bodies that hold each other
+  std::vector<std::uint32_t> part_of_;  // of each rigid body: the lowest index of the bodies joined to it
+  std::vector<std::uint32_t> joined_;   // how many bodies are joined to it
   OfRigid touches_, joints_;
   std::vector<std::uint32_t> pressed_, set_;
-  std::vector<SupportedSet> sets_;  // and behind count_ those that keep room for others
+  std::vector<SupportedSet> sets_;  // those from count_ on keep their room for later
   std::size_t count_ = 0;
 };
 

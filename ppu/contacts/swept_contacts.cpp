@@ -12,9 +12,9 @@ namespace {
 using Eigen::Vector3f;
 
 constexpr float kFast =
-    1;  // cells of the smaller ones, in a substep: what is slower ends near where it touches
+    1;  // cells of the smaller ones, in a substep: slower bodies end near where they touch
 constexpr float kFastInBodies =
-    0.3f;  // of the thinner body's thickness in a substep: what is slower ends where it is pushed back
+    0.3f;  // of the thinner body's thickness in a substep: slower bodies end where they are pushed back
 constexpr float kSweepStep = 0.5f;  // cells
 constexpr int kMostMoments = 48;    // of a sweep
 
@@ -22,7 +22,7 @@ Vector3f between(const Vector3f& from, const Vector3f& to, float share) { return
 Bounds<3> between(const Bounds<3>& from, const Bounds<3>& to, float share) {
   return {between(from.low, to.low, share), between(from.high, to.high, share)};
 }
-/// How far one body moves against another in the substep, as a whole, metres.
+/// The relative mean displacement of two bodies in the substep, metres.
 float relative_travel(const ContactBody& a, const ContactBody& b) { return (a.travel - b.travel).norm(); }
 float smaller_spacing(const ContactBody& a, const ContactBody& b) {
   return std::min(a.spacing(), b.spacing());

@@ -1,5 +1,5 @@
 #pragma once
-// Contacts of two soft bodies that may pass each other within a substep: where one is at its end says nothing.
+// Finds contacts of two soft bodies that may pass through each other within a substep: their places at its end do not show it.
 
 #include <Eigen/Core>
 #include <vector>
@@ -10,18 +10,18 @@
 
 namespace softcell::ppu {
 
-/// Whether two bodies would go so far into each other in the substep that they have to be swept: more than a cell, and three tenths of the
-/// thinner one's thickness. Their surfaces alone would be stopped, and what is behind goes on through them, so they hit each other as
-/// rigid bodies would (bounces.h), with a restitution that slower ones have about.
+/// Whether two bodies would penetrate so far in the substep that they have to be swept: more than a cell, and more than three tenths of the
+/// thinner one's thickness. Contacts would stop only their surfaces, and the rest would pass through, so they hit each other as rigid
+/// bodies would (bounces.h), with about the restitution that slower bodies have.
 bool are_fast(const ContactBody& a, const ContactBody& b);
 
 inline constexpr float kFastRestitution = 0.3f;
 
-/// Used by one thread; keeps its room.
+/// Used by one thread; keeps its allocated memory.
 class SweptContacts {
  public:
-  /// Points of a's surface in b, as seen from a: each where it first is in b, if both go straight on. They are looked up in steps of half a
-  /// cell, or of a share of the way of what is faster than that allows. Appends to `contacts`.
+  /// Finds points of a's surface in b, as seen from a: each at the place where it is first in b, if both move straight. The motion is
+  /// sampled every half cell, or in a fixed number of steps if a body is too fast for that. Appends to `contacts`.
   /// @param step  seconds
   void find(const ContactBody& a, const ContactBody& b, float step, std::vector<SoftContact>& contacts);
 

@@ -1,5 +1,5 @@
 #pragma once
-// Who touches whom, summed up from call to call of poll(): what contact events of both engines are made of.
+// Records which bodies touch from one poll() to the next, for the contact events of both engines.
 
 #include <cstdint>
 #include <map>
@@ -12,7 +12,7 @@
 
 namespace softcell::ppu {
 
-/// What the other one of a touch is.
+/// What a soft body touches.
 enum class TouchedKind { kSoft, kRigid, kTrigger };
 
 /// @tparam Event  ContactEvent or ContactEvent2d. Used by one thread.
@@ -20,15 +20,15 @@ template <typename Event>
 class TouchLog {
  public:
   using Vector = typename Event::Vector;
-  /// A soft body's number, what the other one is, and that one's number: in an order that does not depend on addresses.
+  /// A soft body's number, the kind of the other one, and its number: an order that does not depend on addresses.
   using Key = std::tuple<std::uint32_t, TouchedKind, std::uint64_t>;
 
-  /// Two that touch, or did when events were polled last.
+  /// A pair that touches, or touched at the last poll.
   class Touch {
    public:
     Event event;
 
-    /// Adds a point where they touch.
+    /// Adds a contact point of the pair.
     /// @param impulse  kg m/s  @param weight  of the point in the mean of positions and normals, above 0
     void add(float impulse, float weight, const Vector& point, const Vector& normal) {
       if (!goes_on_) event.impulse = 0, weight_ = 0, event.position.setZero(), event.normal.setZero();
@@ -46,14 +46,14 @@ class TouchLog {
       taken.kind = is_old_ ? Event::Kind::kPersist : Event::Kind::kBegin;
       taken.position /= weight_;
       taken.normal = event.normal.norm() > 0 ? event.normal.normalized() : Vector::UnitY().eval();
-      // Where it ends is where they touched last.
+      // An end event reports the place of the last touch.
       event.position = taken.position;
       event.normal = taken.normal;
       is_old_ = true;
       goes_on_ = false;
       return taken;
     }
-    /// As it was polled last, without an impulse.
+    /// The event of the last poll again, without an impulse.
     Event persist() const {
       Event again = event;
       again.kind = Event::Kind::kPersist;
@@ -68,25 +68,25 @@ class TouchLog {
       return last;
     }
 
-    bool is_old_ = false;   // it was among those that were polled
-    bool goes_on_ = false;  // they touched in a substep since then
-    bool is_over_ = false;  // one of them is gone
-    float weight_ = 0;      // of the sums since then: position and normal are not divided by it yet
+    bool is_old_ = false;   // it was part of the last poll
+    bool goes_on_ = false;  // they have touched in a substep since then
+    bool is_over_ = false;  // one of them has been removed
+    float weight_ = 0;      // sum of weights since then; position and normal are still to be divided by it
   };
 
-  /// A substep is about to add what touches in it.
+  /// Call it at the begin of each substep, before its contacts are added.
   void begin_step() { has_stepped_ = true; }
   Touch& operator[](const Key& key) { return touches_[key]; }
   void clear() { touches_.clear(); }
 
-  /// A body goes: what it touched ends.
+  /// Ends all touches of a body that is removed.
   template <typename Body>
   void forget(const Body& body) {
     for (auto& [key, touch] : touches_)
       if (touch.event.body == &body || touch.event.other == &body) touch.is_over_ = true;
   }
 
-  /// What has begun, gone on or ended since the last call, in the order of keys. Without a substep since then, all goes on.
+  /// Touches that have begun, gone on or ended since the last call, in the order of keys. Without a substep since then, all go on.
   std::vector<Event> poll() {
     std::vector<Event> events;
     for (auto entry = touches_.begin(); entry != touches_.end();) {
@@ -109,7 +109,7 @@ class TouchLog {
   }
 
  private:
-  /// Contacts of those that sleep are not looked for, and go on; trigger volumes are.
+  /// Contacts of sleeping bodies are not looked for, so they go on; those of trigger volumes are looked for.
   static bool sleeps(const Key& key, const Event& event) {
     return std::get<TouchedKind>(key) != TouchedKind::kTrigger && event.body->asleep() &&
            (event.other == nullptr || event.other->asleep());

@@ -32,7 +32,7 @@ Eigen::Vector<double, kDimension> middle_of(const Corners<kDimension>& corners,
   return sum / static_cast<double>(corners.size());
 }
 
-/// Its columns are the mean edges of a cell along each axis.
+/// A matrix whose columns are the mean edges of a cell along each axis.
 template <int kDimension>
 Eigen::Matrix<double, kDimension, kDimension> edges_of(const Corners<kDimension>& corners,
                                                        Positions<kDimension> positions) {
@@ -45,7 +45,7 @@ Eigen::Matrix<double, kDimension, kDimension> edges_of(const Corners<kDimension>
   return edges;
 }
 
-/// Of the turn from one rotation to another.
+/// The cosine of the angle between two rotations.
 double cosine_between(const Matrix2d& a, const Matrix2d& b) { return (a.transpose() * b).trace() / 2; }
 double cosine_between(const Matrix3d& a, const Matrix3d& b) { return ((a.transpose() * b).trace() - 1) / 2; }
 
@@ -102,7 +102,8 @@ std::span<const std::uint32_t> BreakTest<kDimension>::find(const Lattice<kDimens
     if (!turns) continue;
     const double most = double{*fracture.turn} * strength;
     if (!(most < kPi)) continue;
-    // Rotations differ by at most twice as much as what they come from, or less, and |R - R'| = 2 sqrt(2) sin(angle / 2) >= 2 sqrt(2) angle / pi.
+    // Rotations differ by at most twice as much as the deformations that they come from, and |R - R'| = 2 sqrt(2) sin(angle / 2) >= 2
+    // sqrt(2) angle / pi.
     const double least = std::sqrt(2.0) * most / kPi;
     if ((cells_[high].deformation - cells_[low].deformation).squaredNorm() < least * least) continue;
     const Matrix &of_low = rotation_of(low), &of_high = rotation_of(high);

@@ -1,5 +1,5 @@
 #pragma once
-// Which faces of a body break: after each substep, by where its particles are.
+// Finds the faces of a body that break, from the positions of its particles after each substep.
 
 #include <Eigen/Core>
 #include <cstdint>
@@ -11,11 +11,11 @@
 
 namespace softcell::ppu {
 
-/// A face breaks when the middles of its cells are farther from each other than 1 + stretch times as far as at rest, or when the cells
-/// are turned against each other by more than `turn`: each times the face's strength. A cell is turned as its mean deformation is, by the
-/// rotation nearest to it. (A cell that is pressed to less than half in a direction may be seen as turned less than it is.)
+/// A face breaks when the distance between the middles of its cells exceeds 1 + stretch times that at rest, or when one cell is rotated
+/// against the other by more than `turn`; each limit is multiplied by the face's strength. A cell's rotation is the rotation nearest to its
+/// mean deformation. (For a cell pressed to less than half in a direction, the rotation may be underestimated.)
 ///
-/// In double precision, in the order of cells: the same bits for every solver. Used by one thread; keeps its room.
+/// Computes in double precision, in the order of cells: the same bits for every solver. Used by one thread; keeps its allocated memory.
 /// @source  [LSM07], where links between particles break by the same two measures.
 template <int kDimension>
 class BreakTest {
@@ -23,8 +23,8 @@ class BreakTest {
   using Vector = Eigen::Vector<float, kDimension>;
 
   /// @param positions  metres, of each particle
-  /// @param rest       the same at rest, of a body with a rest shape of its own; empty: as the lattice has them
-  /// @return numbers of faces that were not broken before, ascending; good until the next call
+  /// @param rest       the same at rest, for a body with its own rest shape; empty: the lattice's rest positions
+  /// @return numbers of faces that were not broken before, ascending; valid until the next call
   std::span<const std::uint32_t> find(const Lattice<kDimension>& lattice, const BreakableFaces& cracks,
                                       std::span<const Vector> positions, std::span<const Vector> rest,
                                       const Fracture& fracture);
@@ -34,7 +34,7 @@ class BreakTest {
   using Matrix = Eigen::Matrix<double, kDimension, kDimension>;
   struct Cell {
     Exact middle = Exact::Zero();
-    Matrix deformation;  // where turns are looked at
+    Matrix deformation;  // set if turns are tested
     Matrix rotation;
     bool has_rotation = false;
   };
@@ -48,14 +48,14 @@ class BreakTest {
 extern template class BreakTest<2>;
 extern template class BreakTest<3>;
 
-/// A cut by a program: faces whose cells have their middles on different sides of a parallelogram, or of the whole plane, break.
-/// @param along, across  its sides from `corner`; null vectors are not allowed   @param whole_plane  it has no end
+/// A cut by a program: breaks faces whose cells have their middles on different sides of a parallelogram, or of its whole plane.
+/// @param along, across  sides of the parallelogram from `corner`; must not be 0   @param whole_plane  cut along the whole plane
 std::vector<std::uint32_t> faces_across(const Lattice<3>& lattice, const BreakableFaces& cracks,
                                         std::span<const Eigen::Vector3f> positions,
                                         const Eigen::Vector3f& corner, const Eigen::Vector3f& along,
                                         const Eigen::Vector3f& across, bool whole_plane);
-/// The same in two dimensions: the middles lie on different sides of a stretch of a line, or of the whole line.
-/// @param way  from one end of the stretch to the other; null vectors are not allowed
+/// The same in two dimensions: the middles lie on different sides of a line segment, or of its whole line.
+/// @param way  from one end of the segment to the other; must not be 0
 std::vector<std::uint32_t> faces_across(const Lattice<2>& lattice, const BreakableFaces& cracks,
                                         std::span<const Eigen::Vector2f> positions,
                                         const Eigen::Vector2f& from, const Eigen::Vector2f& way,

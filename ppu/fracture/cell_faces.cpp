@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::uint32_t kNone = ~0u;
 
-/// The corners of a face in the low cell; in the high one they are without the bit of the axis.
+/// Visits the corners of a face: their numbers in the low cell, and in the high cell, where the bit of the axis is 0.
 template <int kDimension, class Work>
 void for_each_corner(const CellFace& face, const Work& work) {
   const unsigned bit = 1u << face.axis;
@@ -22,7 +22,7 @@ void for_each_corner(const CellFace& face, const Work& work) {
     if ((k & bit) != 0) work(k, k & ~bit);
 }
 
-/// Of each corner of each cell, kCorners cell + corner: the set of those that are one particle.
+/// For each corner of each cell, numbered kCorners cell + corner: the set of corners that are one particle.
 template <int kDimension>
 DisjointSets corners_that_hold(const Lattice<kDimension>& lattice, std::span<const CellFace> faces,
                                const std::vector<bool>& broken) {
@@ -103,9 +103,9 @@ std::vector<LatticePiece<kDimension>> split(const Lattice<kDimension>& lattice,
     LatticePiece<kDimension>& piece = pieces.emplace_back();
     piece.lattice.spacing = lattice.spacing;
     piece.lattice.origin = lattice.origin;
-    // Particles in the order of the whole's, copies in that of the cells that have them.
+    // Particles are sorted by their numbers in the whole, copies by the cells that have them.
     std::vector<std::pair<std::uint32_t, std::uint32_t>>
-        particles;  // of the whole; the corner that stands for it
+        particles;  // number in the whole; the corner that represents the particle
     for (const std::uint32_t c : cells)
       for (std::uint32_t k = 0; k < kCorners; ++k)
         if (const std::uint32_t corner = kCorners * c + k; corners.find(corner) == corner)

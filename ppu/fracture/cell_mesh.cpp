@@ -73,7 +73,7 @@ class CellMesh::Maker {
  private:
   static constexpr std::uint32_t kNone = ~0u;
 
-  /// In units, from the lattice's low corner; within the lattice's box.
+  /// The position in units, from the lattice's low corner, clamped to the lattice's box.
   UnitPoint place_of(const Vector3f& position) const {
     UnitPoint place;
     for (int d = 0; d < 3; ++d) {
@@ -134,7 +134,7 @@ class CellMesh::Maker {
     return known = add_vertex(point->second, {&own, 1});
   }
 
-  /// The same bits from both triangles of the side, whichever way they have it.
+  /// Gives the same bits for both triangles of the side, whatever direction they list it in.
   std::uint32_t on_side(std::uint32_t a, std::uint32_t b, const CutVertex& cut) {
     if (position_number_[a] > position_number_[b]) std::swap(a, b);
     const std::array<std::uint32_t, 4> key{a, b, cut.axis[0], static_cast<std::uint32_t>(cut.plane[0])};
@@ -177,7 +177,7 @@ class CellMesh::Maker {
     const std::array<std::uint32_t, 3>& triangle = mesh_.triangles[number];
     const std::array<UnitPoint, 3> corners{places_[triangle[0]], places_[triangle[1]], places_[triangle[2]]};
     const UnitPoint normal = normal_of(corners);
-    std::map<std::tuple<int, int, int, int>, std::uint32_t> on_lines;  // of this triangle
+    std::map<std::tuple<int, int, int, int>, std::uint32_t> on_lines;  // for this triangle
     std::vector<std::uint32_t> vertices;
     for (const CutPolygon& polygon : cut_triangle(corners)) {
       const Vector3i cell = low_ + Vector3i(polygon.cell[0], polygon.cell[1], polygon.cell[2]);
@@ -214,7 +214,7 @@ class CellMesh::Maker {
     }
   }
 
-  /// @param cell  one of those around the line's edge
+  /// @param cell  one of the cells around the line's edge
   void cross(std::uint32_t number, const Vector3i& cell, const UnitPoint& normal) {
     const Point& point = made_.points_[number];
     const auto axis = static_cast<std::uint32_t>(3 - point.axis[0] - point.axis[1]);
@@ -225,10 +225,10 @@ class CellMesh::Maker {
         {number, double{point.position[static_cast<int>(axis)]}, normal[axis] < 0 ? 1 : -1});
   }
 
-  /// Along lines of x, from outside.
+  /// Computes windings along lines of x, starting outside.
   void wind() {
     std::map<std::pair<int, int>, std::map<int, int>>
-        lines;  // of y and z: by which number the winding grows behind x
+        lines;  // by y and z: the change of the winding beyond x
     for (const auto& [key, crossings] : made_.crossings_) {
       if (key % 3 != 0) continue;
       const auto part = [corner = key / 3](int shift) {
@@ -251,8 +251,8 @@ class CellMesh::Maker {
   const Lattice<3>& lattice_;
   std::vector<std::uint32_t> position_number_;
   Vector3i low_, high_;
-  std::vector<UnitPoint> places_;                // of the mesh's vertices
-  std::vector<std::uint32_t> vertex_of_corner_;  // of the mesh's vertices
+  std::vector<UnitPoint> places_;                // of each vertex of the mesh
+  std::vector<std::uint32_t> vertex_of_corner_;  // of each vertex of the mesh
   std::unordered_map<std::uint32_t, std::uint32_t> point_of_position_;
   std::unordered_map<std::array<std::uint32_t, 4>, std::uint32_t, HashOfNumbers> vertex_on_side_,
       point_on_side_;
@@ -278,12 +278,13 @@ std::span<const CellMesh::Crossing> CellMesh::crossings_of(const Corner& corner,
   return found == crossings_.end() ? std::span<const Crossing>() : std::span<const Crossing>(found->second);
 }
 
-/// The cut of the solid with a face is bounded by the mesh's cuts with it and by those parts of the face's edges that are inside.
+/// The cut of the solid with a face is bounded by the mesh's cuts with the face, and by those parts of the face's edges that are inside the
+/// solid.
 CellMesh::Cap CellMesh::cap(std::uint32_t cell, std::uint32_t axis) const {
   SC_ASSERT(cell < lattice_.cells.size() && axis < 3, "the face of cell {} of {} along axis {}", cell,
             lattice_.cells.size(), axis);
   Cap cap;
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> sides;  // numbers in cap.positions
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> sides;  // indices in cap.positions
   std::unordered_map<std::uint32_t, std::uint32_t> number_of_point;
   const auto number_of = [&](std::uint32_t point) {
     const auto [number, is_new] =
@@ -292,11 +293,11 @@ CellMesh::Cap CellMesh::cap(std::uint32_t cell, std::uint32_t axis) const {
     return number->second;
   };
   for (const Segment& segment : segments_of(3 * cell + axis)) {
-    const std::uint32_t from = number_of(segment.from);  // first, with every compiler
+    const std::uint32_t from = number_of(segment.from);  // evaluated first by every compiler
     sides.emplace_back(from, number_of(segment.to));
   }
 
-  // Around the face, counter-clockwise seen from outside.
+  // Follows the edges of the face, counter-clockwise seen from outside.
   const std::uint32_t u = (axis + 1) % 3, v = (axis + 2) % 3;
   const std::array<unsigned, 4> around{1u << axis, 1u << axis | 1u << u, 1u << axis | 1u << u | 1u << v,
                                        1u << axis | 1u << v};
@@ -314,7 +315,7 @@ CellMesh::Cap CellMesh::cap(std::uint32_t cell, std::uint32_t axis) const {
     const std::size_t next = (i + 1) % 4, from = i < 2 ? i : next, to = i < 2 ? next : i;  // along the axis
     const std::uint32_t begin = lattice_.corners[cell][around[from]];
     int winding = winding_[begin];
-    std::optional<std::uint32_t> last;  // number of the point before
+    std::optional<std::uint32_t> last;  // number of the last point
     const auto end_at = [&](std::uint32_t number) {
       const bool forwards = (i < 2) == (winding > 0);
       for (int times = std::abs(winding); times > 0; --times)
@@ -330,7 +331,7 @@ CellMesh::Cap CellMesh::cap(std::uint32_t cell, std::uint32_t axis) const {
     if (winding != 0) end_at(number_of_corner(to));
   }
 
-  // Into loops. Where the mesh is open they do not close.
+  // Joins sides into loops. Where the mesh is open they do not close.
   std::vector<std::vector<std::uint32_t>> next_of(cap.positions.size());
   std::vector<int> balance(cap.positions.size());
   for (const auto& [from, to] : sides) {
@@ -349,7 +350,7 @@ CellMesh::Cap CellMesh::cap(std::uint32_t cell, std::uint32_t axis) const {
         next_of[at].pop_back();
         at = next;
       } while (at != begin);
-      if (loop.size() >= 3) loops.push_back(std::move(loop));  // there and back is nothing
+      if (loop.size() >= 3) loops.push_back(std::move(loop));  // two sides, there and back, enclose nothing
     }
   }
   std::vector<Eigen::Vector2d> flat;

@@ -10,8 +10,8 @@
 namespace softcell::ppu {
 namespace {
 
-/// Each cell in which nothing of the body lies goes with the neighbour from which it is reached first, beginning with cells in which
-/// something does: no piece is without anything to be seen.
+/// Makes unbreakable the faces that attach empty cells. Each empty cell stays with the neighbour from which a search reaches it first,
+/// starting at cells that contain something of the body. So no piece is invisible.
 void hold_empty_cells(const CellMesh& whole, BreakableFaces& cracks) {
   std::vector<std::vector<std::pair<std::uint32_t, std::uint32_t>>> neighbours(cracks.cell_of_whole.size());
   for (std::uint32_t f = 0; f < cracks.faces.size(); ++f) {
@@ -46,8 +46,8 @@ void take_all_faces(const Lattice<kDimension>& lattice, std::span<const float> s
     cracks.strength.push_back(strengths.empty() ? 1 : std::min(strengths[face.low], strengths[face.high]));
 }
 
-/// What the faces of a piece were in the body that it comes from.
-/// @param broken  of each face of that
+/// Copies the state of a piece's faces from the body that it comes from.
+/// @param broken  for each face of that body
 template <int kDimension>
 void take_faces_of_piece(const LatticePiece<kDimension>& part, const BreakableFaces& of,
                          const std::vector<bool>& broken, std::span<const std::uint32_t> face_at,
@@ -61,7 +61,7 @@ void take_faces_of_piece(const LatticePiece<kDimension>& part, const BreakableFa
   }
 }
 
-/// Of a piece with as many cells and particles as before nothing has come apart, and nothing else is drawn.
+/// Makes the piece's mesh. A piece with as many cells and particles as before has not come apart, so its mesh stays the same.
 void draw_piece(const Lattice<3>& lattice, const Cracks<3>& cracks, CrackedPiece<3>& piece) {
   piece.cracks.whole = cracks.whole;
   const Lattice<3>& own = piece.part.lattice;
@@ -99,7 +99,7 @@ CrackedPieces<kDimension> break_faces(const Lattice<kDimension>& lattice, const 
     SC_ASSERT(face < broken.size(), "face {} of {} breaks", face, broken.size());
     if (std::isfinite(cracks.strength[face])) broken[face] = true;
   }
-  std::vector<std::uint32_t> face_at(kDimension * lattice.cells.size());  // of kDimension low cell + axis
+  std::vector<std::uint32_t> face_at(kDimension * lattice.cells.size());  // at kDimension low cell + axis
   for (std::uint32_t f = 0; f < cracks.faces.size(); ++f)
     face_at[kDimension * cracks.faces[f].low + cracks.faces[f].axis] = f;
 

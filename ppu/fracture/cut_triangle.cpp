@@ -71,7 +71,7 @@ class Cutter3d {
       CutPolygon& own = is_above[i] ? above : below;
       append(own, polygon.vertices[i], polygon.sides[i], polygon.planes[i]);
       if (is_above[i] == is_above[next]) continue;
-      // The side leaves one part for the other: the one that it leaves goes on along the plane.
+      // The side crosses from one part to the other: the part that it leaves continues along the plane.
       const CutVertex crossing = crossing_of(polygon.sides[i], polygon.planes[i], axis, plane);
       append(own, crossing, on_cut, plane);
       append(is_above[i] ? below : above, crossing, polygon.sides[i], polygon.planes[i]);
@@ -93,7 +93,7 @@ class Cutter3d {
     return vertex.planes == 1 ? side_lies_above(vertex, axis, at) : line_lies_above(vertex, axis, at);
   }
 
-  /// Where a side a b meets the plane K of axis e it has, along d, the coordinate a_d + (K - a_e) / (b_e - a_e) (b_d - a_d).
+  /// A side a b meets the plane K of axis e at the coordinate a_d + (K - a_e) / (b_e - a_e) (b_d - a_d) along d.
   bool side_lies_above(const CutVertex& vertex, std::uint8_t d, std::int64_t at) const {
     const UnitPoint &a = corners_[vertex.of], &b = corners_[(vertex.of + 1u) % 3];
     const std::uint8_t e = vertex.axis[0];
@@ -105,7 +105,8 @@ class Cutter3d {
     return which * sign(along_e) > 0;
   }
 
-  /// A point P of the line is above the triangle's plane, n (P - a) > 0, by n_d (P_d - where the line meets it).
+  /// A point P of the line is above the triangle's plane if n (P - a) > 0, which is n_d times (P_d - the coordinate where the line meets
+  /// the plane).
   bool line_lies_above(const CutVertex& vertex, std::uint8_t d, std::int64_t at) const {
     UnitPoint point;
     for (std::size_t i = 0; i < 2; ++i) point[vertex.axis[i]] = vertex.plane[i] * kUnitsPerCell;

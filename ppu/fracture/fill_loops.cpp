@@ -49,7 +49,7 @@ bool crosses(std::span<const Vector2d> points, const Loop& loop, std::uint32_t f
   return false;
 }
 
-/// Joins a hole to the loop around it by a bridge there and back: from the two nearest points that see each other.
+/// Joins a hole to the loop around it by a bridge, used in both directions, between the two nearest points that see each other.
 void join(std::span<const Vector2d> points, Loop& around, const Loop& hole, std::span<const Loop> holes) {
   std::vector<std::tuple<double, std::size_t, std::size_t>> bridges;
   for (std::size_t i = 0; i < around.size(); ++i)
@@ -88,7 +88,7 @@ void fill(std::span<const Vector2d> points, Loop loop, std::vector<std::array<st
           if (q == a || q == b || q == c) return false;
           return area(a, b, q) >= 0 && area(b, c, q) >= 0 && area(c, a, q) >= 0;
         });
-        if (!empty) round -= 2;  // worse than any ear, if there is one
+        if (!empty) round -= 2;  // worse than any ear, if there are ears
       } else {
         round -= 4;
       }
@@ -110,7 +110,7 @@ std::vector<std::array<std::uint32_t, 3>> fill_loops(std::span<const Vector2d> p
     SC_ASSERT(loop.size() >= 3, "a loop of {} points", loop.size());
     (area(points, loop) < 0 ? holes : outer).push_back(std::move(loop));
   }
-  // Of several loops around a hole the smallest.
+  // Of several loops around a hole, takes the smallest.
   std::vector<Loop> alone;
   for (const Loop& hole : holes) {
     Loop* around = nullptr;

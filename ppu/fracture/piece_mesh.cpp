@@ -40,13 +40,13 @@ class PieceMaker {
   }
 
  private:
-  /// A vertex of the whole where the same particles carry it.
+  /// A vertex of the whole, as it is carried by certain particles.
   struct Copy {
     std::array<std::uint32_t, 4> carriers;
     std::uint32_t vertex = 0, next = kNoCopy;
   };
 
-  /// The corners of a cell that move a point of it: all but those across the planes on which it lies.
+  /// The corners of a cell that move a point of it: all that lie on the same planes as the point.
   std::array<std::uint32_t, 4> carriers_of(const CellMesh::Point& point, std::uint32_t cell) const {
     std::array<std::uint32_t, 4> carriers{};
     std::size_t count = 0;
@@ -86,7 +86,7 @@ class PieceMaker {
     return static_cast<std::uint32_t>(result_.mesh.positions.size() - 1);
   }
 
-  /// Caps where a cell's neighbour in the whole is in another piece, or is parted from it.
+  /// Adds caps where a cell's neighbour in the whole is in another piece, or is separated from the cell.
   void close(std::span<const CellFace> faces) {
     std::vector<std::array<bool, 6>> holds(
         piece_.cells.size());  // of each cell: towards -x, -y, -z, +x, +y, +z
@@ -108,7 +108,7 @@ class PieceMaker {
       }
   }
 
-  /// @param low  of the whole: the low cell of the face  @param outwards  it is the piece's own cell
+  /// @param low  in the whole: the low cell of the face  @param outwards  whether it is the piece's own cell
   void add_cap(std::uint32_t cell, std::uint32_t low, std::uint32_t axis, bool outwards) {
     const CellMesh::Cap cap = whole_.cap(low, axis);
     const Vector3f normal = (outwards ? 1.0f : -1.0f) * Vector3f::Unit(axis);
@@ -129,7 +129,7 @@ class PieceMaker {
     }
   }
 
-  /// Part by part; caps are the last one.
+  /// Puts the mesh together part by part; caps are the last part.
   void gather() {
     TriangleMesh& mesh = result_.mesh;
     const TriangleMesh& of = whole_.mesh();

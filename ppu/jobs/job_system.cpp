@@ -33,7 +33,7 @@ constexpr dma::ElementRun kBoardRecord[] = {{4, 4}, {4, 2}, {120, 8}};
 constexpr dma::BufferOptions kWords{.element_bytes = 4};
 constexpr dma::BufferOptions kDescriptors{.spe_access = dma::SpeAccess::kRead, .record = kDescriptorRecord};
 
-/// What ChainState::failed_status says of a job that ended by a fault: no main returns it.
+/// ChainState::failed_status of a job that ended by a fault: no main returns this value.
 constexpr std::uint32_t kFaulted = 0x100;
 
 template <class Line>
@@ -41,7 +41,7 @@ std::byte* host_of(dma::Buffer<Line>& lines, std::size_t index = 0) {
   return reinterpret_cast<std::byte*>(&lines[index]);
 }
 
-/// Changes a line that SPEs change too.
+/// Changes a line that SPEs also change.
 template <class Line, class Change>
 Line change_line(dma::Reservations& reservations, dma::ReservationHolder& holder, dma::Buffer<Line>& at,
                  const Change& change, std::size_t index = 0) {
@@ -55,7 +55,7 @@ Line change_line(dma::Reservations& reservations, dma::ReservationHolder& holder
   return line;
 }
 
-/// @throws std::invalid_argument  the image lies where its jobs would.
+/// @throws std::invalid_argument  the image lies where its jobs would lie.
 const ls_sim::KernelImage& require_loop(const ls_sim::KernelImage& image) {
   if (image.begin == spu::kJobAreaBegin) {
     throw std::invalid_argument("kernel " + image.name +
@@ -100,7 +100,7 @@ dma::Buffer<JobDescriptor> room_for(dma::AddressSpace& memory, const std::string
   return {memory, chain + ": jobs", std::max<std::size_t>(jobs, 1), kDescriptors};
 }
 
-/// Wakes whoever waits for a chain's last line when an SPE writes it.
+/// Wakes a thread that waits for a chain when an SPE writes the chain's last line.
 class DoneListener final : public dma::ReservationListener {
  public:
   void on_reservation_lost() override {
@@ -151,7 +151,7 @@ struct JobChain::State {
   std::vector<std::uint32_t> stage_ends;
   std::vector<const ls_sim::KernelImage*> kernels;  // of each job
   std::vector<JobFailure> failures;
-  std::vector<JobFailure> faults;  // of the kick under way; guarded by the system's mutex
+  std::vector<JobFailure> faults;  // of the current kick; guarded by the system's mutex
   std::size_t most_jobs;
   std::uint32_t kicks = 0;
   bool under_way = false;
@@ -164,7 +164,7 @@ struct JobSystem::State {
   void stop();
   void kick(JobChain::State& chain, const ChainState& state);
 
-  // With the mutex.
+  // Call these with the mutex locked.
   void on_run_ended(int spe, const ls_sim::RunResult& result);
   bool record_failure(int spe, const ls_sim::RunResult& result);
   void end_loops();
@@ -193,18 +193,18 @@ struct JobSystem::State {
   bool wants_checked;
   bool takes_turns;  // SPEs run only while the PPU side waits for them
   dma::Buffer<JobBoard> board;
-  dma::Buffer<JobBell> bells;  // of each SPE
-  /// Of each chain, by its place on the board. They stay when a chain goes: an SPE that has read the board
-  /// before looks at the line after, and finds nothing there to take, or a job of the next chain.
+  dma::Buffer<JobBell> bells;  // for each SPE
+  /// For each chain, by its place on the board. A place stays when its chain is destroyed: an SPE that has read the board before may look
+  /// at the line afterwards, and finds nothing there to take, or a job of the next chain.
   dma::Buffer<ChainState> chain_states;
   std::vector<Placed> images;
 
-  std::mutex mutex;  // guards all below; taken by SPEs' threads when a loop has ended
+  std::mutex mutex;  // guards all members below; SPEs' threads lock it when a loop has ended
   dma::ReservationHolder holder;
   std::array<JobChain::State*, spu::kMaxChains> chains{};
   bool stopping = false;
-  int loops_left = 0;     // that have not ended
-  std::string breakdown;  // why all loops end or have ended, where one has failed by itself
+  int loops_left = 0;     // loops that have not ended yet
+  std::string breakdown;  // why all loops end or have ended, if one has failed by itself
 
   ls_sim::SpeGroup group;
   ls_sim::SpeGroup::Outside outside;  // the PPU side may always kick a chain
@@ -248,7 +248,7 @@ void JobSystem::State::stop() {
   for (int spe = 0; spe < group.spes(); ++spe) group.wait(spe);
 }
 
-/// They end when they have finished what they are at.
+/// Loops end after they have finished their current job.
 void JobSystem::State::end_loops() {
   change(board, [](JobBoard& line) {
     line.stop = 1;
@@ -278,7 +278,7 @@ void JobSystem::State::ring(int spe) {
                                    reinterpret_cast<const std::byte*>(&rung));
 }
 
-/// Wakes one SPE at most: it wakes the next if it leaves work.
+/// Wakes at most one SPE: if it leaves work, it wakes the next one.
 void JobSystem::State::announce_work() {
   int sleeper = 0;
   change(board, [&sleeper](JobBoard& line) {
@@ -303,8 +303,8 @@ void JobSystem::State::kick(JobChain::State& chain, const ChainState& state) {
   }
 }
 
-/// On the SPE's thread. A job loop ends when it is told to, or with the job that it has called, by a fault or
-/// a stop instruction: then another takes its place. When it ends for another reason, a job may be lost.
+/// Runs on the SPE's thread. A job loop ends when it is told to, or when a fault or a stop instruction ends the job that it has called:
+/// then another loop takes its place. If it ends for another reason, a job may be lost.
 void JobSystem::State::on_run_ended(int spe, const ls_sim::RunResult& result) {
   SC_ASSERT(loops_left > 0, "the loop of SPE {} ends, and none was running", spe);
   --loops_left;
@@ -322,8 +322,8 @@ void JobSystem::State::on_run_ended(int spe, const ls_sim::RunResult& result) {
   if (loops_left == 0 && !breakdown.empty()) fail_unfinished();
 }
 
-/// Does what the loop would have done: counts the job, as failed. A stage that fails is the chain's last.
-/// @return  false when it is no chain's job.
+/// Does what the loop would have done: counts the job, as failed. A failed stage is the chain's last one.
+/// @return  false: the job belongs to no chain.
 bool JobSystem::State::record_failure(int spe, const ls_sim::RunResult& result) {
   for (JobChain::State* chain : chains) {
     if (chain == nullptr) continue;
@@ -349,7 +349,7 @@ bool JobSystem::State::record_failure(int spe, const ls_sim::RunResult& result) 
   return false;
 }
 
-/// No loop runs, and none will before the next kick: what has not ended now never would.
+/// No loop runs, and none will before the next kick: a job that has not ended by now never would.
 void JobSystem::State::fail_unfinished() {
   for (JobChain::State* chain : chains) {
     if (chain == nullptr) continue;
@@ -360,7 +360,7 @@ void JobSystem::State::fail_unfinished() {
     const ChainState state = change_state(*chain, [&](ChainState& line) {
       if (line.kick == done.kick) return;  // not under way: its owner may be filling it
       jobs = static_cast<std::uint32_t>(chain->kernels.size());
-      line.next = line.stage_end;  // for nobody to take
+      line.next = line.stage_end;  // so that nobody takes one
       if (line.failed++ == 0) {
         line.failed_job = jobs;
         line.failed_status = kFaulted;
@@ -392,7 +392,7 @@ JobImage JobSystem::load(const ls_sim::KernelImage& image) {
                              [&](const State::Placed& known) { return known.kernel == &image; });
   if (placed == state_->images.end()) {
     require_job(image, state_->loop, state_->wants_checked);
-    // Whole quadwords: what a get can move.
+    // Whole quadwords, which a get can move.
     dma::Buffer<std::byte> bytes(state_->memory, "image " + image.name, (image.bytes.size() + 15) / 16 * 16,
                                  kRead);
     std::memcpy(bytes.data(), image.bytes.data(), image.bytes.size());
@@ -427,7 +427,7 @@ JobChain::State::State(JobSystem::State& system, const std::string& chain_name, 
   }
   *slot = this;
   board_slot = static_cast<std::size_t>(slot - shared.chains.begin());
-  // Nothing that the last chain here has left.
+  // Clears what the last chain in this place has left.
   shared.change_state(*this, [](ChainState& line) { line = {}; });
   shared.change(shared.board,
                 [&](JobBoard& line) { line.chains[board_slot] = shared.chain_states.ea(board_slot).value; });
@@ -440,7 +440,7 @@ JobChain::State::~State() {
   shared.chains[board_slot] = nullptr;
 }
 
-/// Each job knows where the stage after its own ends.
+/// Tells each job where the stage after its own ends.
 void JobChain::State::link_stages() {
   std::uint32_t job = 0;
   for (std::size_t stage = 0; stage < stage_ends.size(); ++stage) {
@@ -450,7 +450,7 @@ void JobChain::State::link_stages() {
   SC_ASSERT(job == kernels.size(), "the last stage ends at job {} of {}", job, kernels.size());
 }
 
-/// Looks at the last line, and reserves it, so that the listener hears of its next change.
+/// Reads the last line and reserves it, so that the listener hears of its next change.
 bool JobChain::State::look() {
   if (!under_way) return true;
   ChainDone last;
@@ -468,7 +468,8 @@ bool JobChain::State::finished() {
   return look();
 }
 
-/// Where SPEs take turns, all sleep now: until the deadline of a job that waits for nothing, behind which loops that start anew want turns.
+/// If SPEs take turns, all of them sleep by now, until a job that waits in vain reaches its deadline. Loops that start anew after that need
+/// turns again, so this looks from time to time.
 void JobChain::State::wait() {
   constexpr std::chrono::milliseconds kNextLook{5};
   while (!finished()) {

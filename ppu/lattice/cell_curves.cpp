@@ -17,7 +17,7 @@ using Eigen::Vector2i;
 
 constexpr std::uint32_t kNobody = std::numeric_limits<std::uint32_t>::max();
 
-/// Of the two ends of an edge, at a share of it: what each end's position and derivative count.
+/// The weights of both ends of an edge, at a share of it: of their positions and of their derivatives.
 struct Curve {
   explicit Curve(float t)
       : position{(1 - t) * (1 - t) * (1 + 2 * t), t * t * (3 - 2 * t)},
@@ -51,7 +51,7 @@ MeanMap::MeanMap(const Lattice<2>& lattice) : lattice_(lattice) {
 }
 
 void MeanMap::add_vertex(Skin2d& skin, std::uint32_t cell, const Vector2f& at) {
-  constexpr double kBeyondNearest = 2.5;  // cells: three rows of particles count at least
+  constexpr double kBeyondNearest = 2.5;  // cells: at least three rows of particles count
   SC_ASSERT(cell < lattice_.cells.size(), "cell {} of {}", cell, lattice_.cells.size());
   const auto from_point = [&](std::uint32_t particle) {
     return Eigen::Vector2d((lattice_.particles[particle].cast<float>() - at).cast<double>());
@@ -98,7 +98,7 @@ CellCurves::CellCurves(const Lattice<2>& lattice) : lattice_(lattice), cells_of_
   for (std::uint32_t cell = 0; cell < lattice.cells.size(); ++cell)
     for (const std::uint32_t particle : lattice.corners[cell]) cells_of_[particle].push_back(cell);
   for (const std::size_t axis : {0u, 1u}) {
-    // Edges that begin and that end at each particle, once for each cell on either side.
+    // Edges that begin and edges that end at each particle, each edge once for each cell beside it.
     struct Edges {
       std::vector<std::uint32_t> before, behind;
     };
@@ -151,7 +151,7 @@ void CellCurves::add_vertex(Skin2d& skin, std::uint32_t cell, const Vector2f& at
       near_.insert(near_.end(), cells_of_[particle].begin(), cells_of_[particle].end());
     std::ranges::sort(near_);
     near_.erase(std::unique(near_.begin(), near_.end()), near_.end());
-    // Towards a cell its weight grows without limit, and at the reach it is 0.
+    // The weight of a cell grows without limit near the cell, and is 0 at the reach.
     const auto weight = [&](std::uint32_t other) {
       const float far = std::max(distance(other, at), kInside);
       const float height = std::max(kReach / far - 1, 0.0f);
@@ -166,7 +166,7 @@ void CellCurves::add_vertex(Skin2d& skin, std::uint32_t cell, const Vector2f& at
   add_to(skin, cell, at, pulls_);
 }
 
-/// Adds what one cell's patch does with the point.
+/// Adds the shares by which one cell's patch moves the point.
 void CellCurves::pull_from(std::uint32_t cell, const Vector2f& at, float weight_of_cell) {
   const Vector2f in = at - lattice_.cells[cell].cast<float>();
   const Vector2f nearest = in.cwiseMax(Vector2f::Zero()).cwiseMin(Vector2f::Ones()), beyond = in - nearest;

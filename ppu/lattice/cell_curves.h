@@ -1,5 +1,5 @@
 #pragma once
-// How what is drawn follows a lattice in two dimensions without kinks between cells.
+// Maps that move a skin with a lattice in two dimensions, without kinks between cells.
 
 #include <Eigen/Core>
 #include <array>
@@ -11,20 +11,19 @@
 
 namespace softcell::ppu {
 
-/// A map from places at rest to the places of the moment. All of it is linear in the positions of particles: what a point needs is a list
-/// of shares, made once.
+/// A map from places at rest to present places. It is linear in the positions of particles: each point needs a list of shares, made once.
 class SkinMap {
  public:
   virtual ~SkinMap() = default;
-  /// Appends what moves a point to a skin's lists. @param cell  the number of its nearest cell  @param at  grid coordinates
+  /// Appends the shares that move a point to a skin's lists. @param cell  the number of its nearest cell  @param at  grid coordinates
   virtual void add_vertex(Skin2d& skin, std::uint32_t cell, const Eigen::Vector2f& at) = 0;
 };
 
-/// The affine map that fits the particles around a point best, the near ones above all (moving least squares). It does not know the cells:
-/// stairs in a lattice's edge are none in what is drawn, also where something presses on them.
+/// The affine map that fits the particles around a point best, near ones with the greatest weight (moving least squares). It ignores the
+/// cells: stairs at a lattice's edge do not show in the skin, not even where something presses on them.
 class MeanMap final : public SkinMap {
  public:
-  /// @param lattice  with one particle at each grid index; must outlive it
+  /// @param lattice  with one particle at each grid index; must outlive this map
   explicit MeanMap(const Lattice<2>& lattice);
   void add_vertex(Skin2d& skin, std::uint32_t cell, const Eigen::Vector2f& at) override;
 
@@ -34,15 +33,15 @@ class MeanMap final : public SkinMap {
   std::vector<std::uint32_t> particle_at_;  // rows of y; kNobody
 };
 
-/// One cubic patch for each cell, which has the positions of the cell's particles, and
-/// their derivatives, at the corners. The derivative at a particle is the mean of those along the cells' edges that end there, so patches
-/// side by side have one tangent. Outside of its cells a point goes on along the derivatives at the nearest point of a cell: of several that
-/// share a particle with the nearest one, in the mean, so that nothing jumps where another becomes the nearest.
+/// One cubic patch for each cell, defined by the positions of the cell's particles and the derivatives at the corners. The derivative at a
+/// particle is the mean of those along the cells' edges that end there, so neighbouring patches share a tangent. A point outside of the
+/// cells is extrapolated along the derivatives at the nearest point of a cell. Several cells that share a particle with the nearest one
+/// count in the mean, so that nothing jumps where another cell becomes the nearest.
 ///
 ///      h0 = 1 - h1     h1 = 3 t^2 - 2 t^3      g0 = t (1 - t)^2      g1 = -t^2 (1 - t)
 class CellCurves final : public SkinMap {
  public:
-  /// @param lattice  must outlive it
+  /// @param lattice  must outlive this map
   explicit CellCurves(const Lattice<2>& lattice);
 
   void add_vertex(Skin2d& skin, std::uint32_t cell, const Eigen::Vector2f& at) override;
@@ -59,10 +58,10 @@ class CellCurves final : public SkinMap {
 
   const Lattice<2>& lattice_;
   std::array<std::vector<std::vector<Share>>, 2>
-      derivatives_;                                   // along x and y, of each particle, of a cell's edge
-  std::vector<std::vector<std::uint32_t>> cells_of_;  // of each particle
-  std::vector<std::uint32_t> near_;                   // cells of the vertex in making
-  std::vector<Pull2d> pulls_;                         // of the vertex in making
+      derivatives_;                                   // along x and y, for each particle, of a cell's edge
+  std::vector<std::vector<std::uint32_t>> cells_of_;  // for each particle
+  std::vector<std::uint32_t> near_;                   // cells of the current vertex
+  std::vector<Pull2d> pulls_;                         // of the current vertex
 };
 
 }  // namespace softcell::ppu

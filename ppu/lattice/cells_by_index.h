@@ -19,7 +19,7 @@ class CellsByIndex {
   using Vector2f = Eigen::Vector2f;
   static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
-  /// @param lattice  must outlive it  @pre  it has cells
+  /// @param lattice  must outlive this object  @pre  it has cells
   explicit CellsByIndex(const Lattice<2>& lattice) : lattice_(lattice) {
     SC_ASSERT(!lattice.cells.empty(), "a lattice of {} particles has no cells", lattice.particles.size());
     low_ = high_ = lattice.cells.front();
@@ -48,11 +48,11 @@ class CellsByIndex {
     return (low - at).cwiseMax(at - low - Vector2f::Ones()).cwiseMax(Vector2f::Zero()).norm();
   }
 
-  /// The number of the cell that is nearest to the point, the first of those that are as near.
+  /// The number of the cell that is nearest to the point; the lowest number of several equally near ones.
   std::uint32_t nearest(const Vector2f& at) const {
     const Vector2i around = at.array().floor().matrix().cast<int>();
     std::uint32_t found = kNone;
-    float least = 1;  // cells as far as that may lie beyond those that are tried first
+    float least = 1;  // cells at this distance may lie beyond those that are tried first
     const auto consider = [&](std::uint32_t cell) {
       const float away = distance(lattice_.cells[cell], at);
       if (away < least || (away == least && cell < found)) {

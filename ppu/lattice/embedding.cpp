@@ -41,7 +41,7 @@ std::vector<PlaceInCell> locate_all(const TriangleMesh& mesh, const Lattice<3>& 
   return places;
 }
 
-/// The particles from the lowest to the highest corner number among those with the given bits.
+/// The particles from the lowest to the highest corner number among the corners with the given bits.
 struct Span {
   std::uint32_t low, high;  ///< inclusive
   void widen(const Span& other) { low = std::min(low, other.low), high = std::max(high, other.high); }
@@ -56,10 +56,9 @@ Span span_of(const std::array<std::uint32_t, 8>& corners, std::size_t bx) {
 
 /// Gathers cells into parts.
 ///
-/// Particles are sorted by x, then y, then z, so the cells of one x-layer, taken in order of y, read a run of
-/// particles of their own layer of particles and a run of the next. As long as everything from the first to
-/// the last particle fits, one run does, and a part may go over several layers of a slender body; when that
-/// grows too long, two runs within one layer.
+/// Particles are sorted by x, then y, then z. So the cells of one x-layer, taken in order of y, read a run of particles of their own layer
+/// of particles and a run of the next one. As long as everything from the first to the last particle fits, one run is used, and a part may
+/// cover several layers of a slender body; when that grows too long, two runs within one layer.
 class PartCutter {
  public:
   PartCutter(const Lattice<3>& lattice, std::vector<SkinPart>& parts) : lattice_(lattice), parts_(parts) {}
@@ -91,7 +90,7 @@ class PartCutter {
   }
 
  private:
-  /// What the part's cells read.
+  /// The particles that the part's cells read.
   struct Reach {
     Span near, far;               ///< particles of the corners with bx = 0 and with bx = 1
     int first_layer, last_layer;  ///< of cells
@@ -102,7 +101,7 @@ class PartCutter {
     }
   };
 
-  /// Chooses the last part's windows. @return false, with nothing changed, when no choice is short enough.
+  /// Chooses the last part's windows. @return false, with nothing changed: no choice is short enough.
   bool set_windows(const Reach& reach) {
     Span all = reach.near;
     all.widen(reach.far);
@@ -123,7 +122,7 @@ class PartCutter {
   Reach reach_{};
 };
 
-/// The corner index that stands for a particle in a part that reads it.
+/// The corner index that stands for a particle in a part that reads the particle.
 std::uint16_t corner_index(const SkinPart& part, std::uint32_t particle) {
   const auto& [first, second] = part.window;
   const bool in_first = particle >= first.first_particle && particle - first.first_particle < first.count;
@@ -191,7 +190,7 @@ Embedding embed(const TriangleMesh& mesh, std::span<const PlaceInCell> places, c
 
   SC_ASSERT(embedding.vertex_of_slot.size() == 4 * embedding.groups.size(), "{} slots in {} groups of four",
             embedding.vertex_of_slot.size(), embedding.groups.size());
-  // Windows are known once a part is complete.
+  // The windows of a part are known only when the part is complete.
   for (const SkinPart& part : embedding.parts) {
     for (std::uint32_t g = part.first_group; g < part.first_group + part.group_count; ++g) {
       for (std::size_t k = 0; k < 8; ++k) {

@@ -1,5 +1,5 @@
 #pragma once
-// Embeds a mesh in a lattice: finds the cell of each vertex and the vertex's place in it, packed for the kernel skin.
+// Embeds a mesh in a lattice: finds each vertex's cell and its place in the cell, packed for the kernel skin.
 
 #include <span>
 #include <vector>
@@ -28,27 +28,26 @@ struct SkinPart {
   }
 };
 
-/// Most groups in one part: 2880 vertices, 90 KB in and 45 KB out. Small, so that six SPEs share one body (a
-/// mesh of 35,000 vertices makes some 13 parts, two for each); large against the up to 32 KB of corners that
-/// every part fetches for itself, and against the start of a job: with 512, skinning took some 5 % longer.
+/// The most groups in one part: 2880 vertices, 90 KB in and 45 KB out. Small enough that six SPEs share one body (a mesh of 35,000 vertices
+/// makes some 13 parts, two for each). Large compared with the up to 32 KB of corners that every part fetches for itself, and with the
+/// start of a job: with 512, skinning took some 5 % longer.
 inline constexpr std::uint32_t kMaxPartGroups = 720;
 
 /// Shared by all bodies of one model, immutable.
 struct Embedding {
   std::vector<spu::SkinGroup> groups;  ///< sorted by part, then by cell
   std::vector<SkinPart> parts;         ///< cover all groups, in order
-  /// Mesh vertex -> output slot 4 * group + lane (a vertex's own, not a repeat).
+  /// Mesh vertex -> output slot 4 * group + lane (the vertex's own slot, not a repeat).
   std::vector<std::uint32_t> slot_of_vertex;
   std::vector<std::uint32_t> vertex_of_slot;  ///< output slot -> mesh vertex; repeats included
-  TriangleMesh mesh;                          ///< as it was given
+  TriangleMesh mesh;                          ///< as passed to embed()
   std::vector<std::uint32_t> indices;  ///< three output slots per mesh triangle: the index buffer for drawing
 };
 
 /// @pre  `lattice` covers `mesh`, as voxelize() makes it.
-/// @throws std::runtime_error  when a vertex lies in no cell, or one layer of the lattice cannot be cut into
-/// jobs.
+/// @throws std::runtime_error  a vertex lies in no cell, or one layer of the lattice cannot be cut into jobs.
 Embedding embed(const TriangleMesh& mesh, const Lattice<3>& lattice);
-/// The same with a place for each vertex: in a lattice with cracks, the place in space does not say the cell.
+/// The same with a given place for each vertex: in a lattice with cracks, the place in space does not determine the cell.
 Embedding embed(const TriangleMesh& mesh, std::span<const PlaceInCell> places, const Lattice<3>& lattice);
 
 }  // namespace softcell::ppu

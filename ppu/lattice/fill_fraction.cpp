@@ -13,8 +13,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kLines = 4;  // a side: 16 lines in a cell
-// Lines stand off the quarters of a cell, where modelled edges like to be.
+constexpr int kLines = 4;  // per side: 16 lines in a cell
+// Lines avoid the quarters of a cell, where modelled edges are often placed.
 constexpr double kOffsetX = 0.4871, kOffsetY = 0.5237;
 
 /// A line passing through the surface; coordinates in cells.
@@ -63,8 +63,7 @@ void find_crossings(const Vector3d (&p)[3], std::vector<Crossing>& crossings) {
   }
 }
 
-/// Adds the parts of one line that are inside to the cells it goes through; false when it does not end
-/// outside.
+/// Adds the inside parts of one line to the cells that it passes through; false if the line does not end outside.
 bool add_inside(std::span<const Crossing> line, std::vector<double>& depth) {
   SC_ASSERT(!depth.empty(), "{} crossings of a column without cells", line.size());
   int winding = 0;

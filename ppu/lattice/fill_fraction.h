@@ -1,5 +1,5 @@
 #pragma once
-// How much of each lattice cell lies inside the mesh.
+// Measures how much of each lattice cell lies inside the mesh.
 
 #include <vector>
 
@@ -7,11 +7,11 @@
 
 namespace softcell::ppu {
 
-inline constexpr float kLeastFill = 0.25f;  ///< a cell that is hardly touched still carries mass
+inline constexpr float kLeastFill = 0.25f;  ///< even a cell that is hardly touched carries mass
 
-/// The filled share of each cell of the lattice, kLeastFill..1, from 16 lines a cell along z: a line is
-/// inside where the surface winds around it. A line that does not end outside (the mesh leaks there, or its
-/// faces point every way) is left out; a cell with no line left counts as half full.
+/// The filled share of each cell of the lattice, kLeastFill..1, measured along 16 lines per cell along z. A point of a line is inside where
+/// the surface winds around it. A line that does not end outside (the mesh leaks there, or its faces point both ways) is ignored; a cell
+/// without any valid line counts as half full.
 /// @pre  Cell indices count from 0.
 std::vector<float> fill_fractions(const TriangleMesh& mesh, const Lattice<3>& lattice);
 

@@ -1,11 +1,11 @@
 #pragma once
-// Which particles of a lattice are linked.
+// Finds the particles of a lattice that are linked.
 
 #include "softcell/soft_bodies/lattice.h"
 
 namespace softcell::ppu {
 
-/// Of each particle: the particles with which it shares a cell, as Lattice::neighbours has them. By its corners.
+/// For each particle: the particles with which it shares a cell, as in Lattice::neighbours. Uses Lattice::corners.
 template <int kDimension>
 Csr find_neighbours(const Lattice<kDimension>& lattice);
 

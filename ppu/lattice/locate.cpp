@@ -9,8 +9,8 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3i;
 
-/// How far past a face a point may lie and still belong to the cell behind it, in cells. The lattice is made
-/// in float: over 256 cells its faces are off by 2e-5 of a cell.
+/// How far beyond a face, in cells, a point may lie and still belong to the cell behind it. The lattice is computed in float: over 256
+/// cells its faces are off by 2e-5 of a cell.
 constexpr double kFaceTolerance = 1e-4;
 
 }  // namespace
@@ -40,7 +40,7 @@ std::optional<PlaceInCell> locate(const Lattice<3>& lattice, const Eigen::Vector
   SC_ASSERT(lattice.spacing > 0, "cells of {} m", lattice.spacing);
   const Vector3d grid =
       (position.cast<double>() - lattice.origin.cast<double>()) / static_cast<double>(lattice.spacing);
-  // Outside any lattice, and NaN: nothing to look for, and no index to overflow.
+  // Far from any lattice, or NaN: return before an index can overflow.
   if (!(grid.cwiseAbs().maxCoeff() <= 2.0 * kMaxLatticeCellsPerAxis)) return std::nullopt;
   const Vector3d low = grid.array().floor();
   Vector3i step;

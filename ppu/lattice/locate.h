@@ -1,5 +1,5 @@
 #pragma once
-// In which cell of a lattice a point lies, and where in it.
+// Finds the cell of a lattice in which a point lies, and its place in the cell.
 
 #include <Eigen/Core>
 #include <cstdint>
@@ -15,7 +15,7 @@ struct PlaceInCell {
   Eigen::Vector3d xi{0, 0, 0};  ///< 0..1 along each edge
 };
 
-/// Which of these cells, ascending as a lattice has them, has this low corner.
+/// The cell with this low corner among these cells, which are ascending as in a lattice.
 template <int kDimension>
 std::optional<std::uint32_t> find_cell(std::span<const Eigen::Vector<int, kDimension>> cells,
                                        const Eigen::Vector<int, kDimension>& index);

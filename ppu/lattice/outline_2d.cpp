@@ -8,13 +8,13 @@
 namespace softcell::ppu {
 namespace {
 
-/// From one corner of a cell to the next, the cell on the left.
+/// A side from one corner of a cell to the next, with the cell on its left.
 struct Side {
   std::uint32_t from, to;
   auto operator<=>(const Side&) const = default;
 };
 
-/// The sides with a cell on their left only, in order.
+/// The sides that have a cell on their left only, sorted.
 std::vector<Side> boundary(const Lattice<2>& lattice) {
   std::vector<Side> sides;
   for (const auto& corner : lattice.corners) {
@@ -44,7 +44,7 @@ std::vector<std::array<std::uint32_t, 3>> cell_triangles(const Lattice<2>& latti
 std::vector<std::vector<std::uint32_t>> outline(const Lattice<2>& lattice) {
   const std::vector<Side> sides = boundary(lattice);
   std::vector<bool> used(sides.size());
-  /// The side that goes on where `side` ends. Of two the one that turns left, around the same cell.
+  /// The side that begins where `side` ends. If there are two, the one that turns left, around the same cell.
   const auto next = [&](const Side& side) {
     const auto first = std::lower_bound(sides.begin(), sides.end(), Side{side.to, 0});
     SC_ASSERT(first != sides.end() && first->from == side.to, "a boundary ends at particle {}", side.to);

@@ -44,7 +44,7 @@ float OutlineDistance::Segment::distance(const Vector2f& at) const {
   return (at - from - share_of_segment(from, along, at) * along).norm();
 }
 
-/// Squares around the place, ring by ring: what lies beyond ring r is farther than r cells.
+/// Looks at squares around the place, ring by ring: everything beyond ring r is farther than r cells.
 float OutlineDistance::nearest(const Vector2f& at) const {
   const Vector2i middle = at.array().floor().matrix().cast<int>() - low_;
   const int rings = std::max(middle.cwiseAbs().maxCoeff(), (size_ - middle).cwiseAbs().maxCoeff());

@@ -1,5 +1,5 @@
 #pragma once
-// How far from the drawn edge of a body in two dimensions a place is.
+// Measures the distance of a place from the drawn edge of a body in two dimensions.
 
 #include <Eigen/Core>
 #include <array>
@@ -11,13 +11,13 @@
 
 namespace softcell::ppu {
 
-/// The outlines of a skin at rest, in grid coordinates. Takes time in proportion to what of the outlines is near.
+/// The outlines of a skin at rest, in grid coordinates. A query takes time in proportion to the segments near the place.
 class OutlineDistance {
  public:
   /// @pre  the skin has outlines
   explicit OutlineDistance(const Skin2d& skin);
 
-  /// In cells, below 0 inside: where outlines go around a place more often counter-clockwise than clockwise.
+  /// In cells, below 0 inside: places that outlines go around more often counter-clockwise than clockwise.
   float signed_distance(const Eigen::Vector2f& at) const;
 
  private:
@@ -33,9 +33,9 @@ class OutlineDistance {
   bool is_inside(const Eigen::Vector2f& at) const;
 
   std::vector<Segment> segments_;
-  Eigen::Vector2i low_, size_;                       // of the squares, a cell large
-  std::vector<std::vector<std::uint32_t>> squares_;  // rows of x: segments there
-  std::vector<std::vector<std::uint32_t>> rows_;     // of each y: segments there
+  Eigen::Vector2i low_, size_;                       // of the squares, each as large as a cell
+  std::vector<std::vector<std::uint32_t>> squares_;  // by rows of x: segments in each square
+  std::vector<std::vector<std::uint32_t>> rows_;     // for each y: segments in that row
 };
 
 }  // namespace softcell::ppu

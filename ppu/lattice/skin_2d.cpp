@@ -19,11 +19,11 @@ using Eigen::Vector2i;
 constexpr std::uint32_t kNone = CellsByIndex::kNone;
 constexpr int kSamples = SkinField::kSamples;
 
-/// Cuts the field's shape into triangles, cell by cell. Where the edge passes, a cell has kSamples x kSamples squares;
-/// elsewhere it is one.
+/// Cuts the field's shape into triangles, cell by cell. A cell that the edge passes through has kSamples x kSamples squares; every other
+/// cell is one square.
 class Mesher {
  public:
-  /// @param light  has the slopes: of all of the shape, if the field is of a part
+  /// @param light  gives the slopes: the field of the whole shape, if `field` is a part of it
   Mesher(SkinMap& map, const CellsByIndex& cells, const SkinField& field, const SkinField& light)
       : map_(map), cells_(cells), field_(field), light_(light), block_count_(field.size() / kSamples) {
     const auto samples =
@@ -47,7 +47,7 @@ class Mesher {
   }
 
  private:
-  /// Where a vertex is: at a sample, or between it and the next one along x or y.
+  /// The place of a vertex: at a sample, or between it and the next one along x or y.
   enum Place : std::uint8_t { kAtSample, kAlongX, kAlongY };
 
   std::size_t slot(int x, int y) const {
@@ -67,14 +67,14 @@ class Mesher {
     return vertex;
   }
 
-  /// Where the edge passes between two samples beside each other.
+  /// The vertex at which the edge passes between two neighbouring samples.
   std::uint32_t crossing(const Vector2i& a, const Vector2i& b) {
     const bool along_x = a.x() != b.x();
     const Vector2i from = a.cwiseMin(b), to = a.cwiseMax(b);
     std::uint32_t& vertex = vertex_at_[along_x ? kAlongX : kAlongY][slot(from.x(), from.y())];
     if (vertex != kNone) return vertex;
     const float before = field_.at(from.x(), from.y()), behind = field_.at(to.x(), to.y());
-    // Off the samples, so that no triangle has two vertices at one place.
+    // Kept away from the samples, so that no triangle has two vertices at one place.
     const float t = std::clamp((SkinField::kEdge - before) / (behind - before), 1.0f / 16, 15.0f / 16);
     vertex = add_vertex(
         (1 - t) * field_.grid_position(from.x(), from.y()) + t * field_.grid_position(to.x(), to.y()),
@@ -100,7 +100,7 @@ class Mesher {
     skin_.cells.push_back(own != kNone ? own : cells_.nearest(middle));
   }
 
-  /// A cell that no edge passes. Beside cells in squares it has their vertices, so that no gap opens.
+  /// Adds a cell that no edge passes through. It includes the vertices of neighbouring cells in squares, so that no gap opens.
   void add_whole(const Vector2i& block) {
     constexpr std::array<std::array<int, 2>, 4> kSteps{{{1, 0}, {0, 1}, {-1, 0}, {0, -1}}};
     constexpr std::array<std::array<int, 2>, 4> kBeside{{{0, -1}, {1, 0}, {0, 1}, {-1, 0}}};
@@ -139,7 +139,7 @@ class Mesher {
     for (std::size_t i = 0; i < 4; ++i) inside[i] = field_.contains(corners[i].x(), corners[i].y());
     const auto count = std::count(inside.begin(), inside.end(), true);
     if (count == 0) return;
-    if (count == 2 && inside[0] == inside[2]) {  // corners across: two pieces
+    if (count == 2 && inside[0] == inside[2]) {  // opposite corners: two pieces
       for (std::size_t i = inside[0] ? 0 : 1; i < 4; i += 2) {
         const Vector2i &corner = corners[i], &next = corners[(i + 1) % 4], &before = corners[(i + 3) % 4];
         const std::uint32_t out = crossing(corner, next), in = crossing(before, corner);
@@ -149,7 +149,7 @@ class Mesher {
       return;
     }
     ring_.clear();
-    std::uint32_t out = kNone, in = kNone;  // where the edge of the square leaves the shape and comes back
+    std::uint32_t out = kNone, in = kNone;  // where the square's boundary leaves the shape and comes back
     for (std::size_t i = 0; i < 4; ++i) {
       const std::size_t next = (i + 1) % 4;
       if (inside[i]) ring_.push_back(at_sample(corners[i].x(), corners[i].y()));
@@ -199,7 +199,7 @@ SkinField field_of(const CellsByIndex& cells, float margin, const Outside2d& out
   return outside ? SkinField::of_shape(cells, margin, outside) : SkinField::of_cells(cells, margin);
 }
 
-/// A shape that cells stand for has no stairs, however it is deformed.
+/// A shape that cells only approximate shows no stairs, however it is deformed.
 std::unique_ptr<SkinMap> map_of(const Lattice<2>& lattice, const Outside2d& outside) {
   if (outside) return std::make_unique<MeanMap>(lattice);
   return std::make_unique<CellCurves>(lattice);
@@ -222,7 +222,7 @@ std::vector<Skin2d> make_skin_parts_2d(const Lattice<2>& lattice, float margin, 
   const auto map = map_of(lattice, outside);
   const std::uint32_t count = 1 + *std::ranges::max_element(parts);
   std::vector<Skin2d> skins;
-  // Each part from what it and those above it cover, without what those above it do: they leave no gaps where three meet.
+  // Makes each part from what it and those above it cover, minus what those above it cover: so no gaps are left where three parts meet.
   std::vector<bool> above(parts.size(), true);
   SkinField covered = all;
   for (std::uint32_t part = 0; part < count; ++part) {
@@ -236,7 +236,7 @@ std::vector<Skin2d> make_skin_parts_2d(const Lattice<2>& lattice, float margin, 
 
 Skin2d make_cover_2d(const Lattice<2>& lattice, const std::function<bool(const Vector2i&)>& drawn) {
   SC_ASSERT(static_cast<bool>(drawn), "nobody says what is drawn of {} cells", lattice.cells.size());
-  constexpr int kSquares = 3;  // along a cell's edge: it bends
+  constexpr int kSquares = 3;  // along a cell's edge, as the cell bends
   const CellsByIndex cells(lattice);
   CellCurves curves(lattice);
   Skin2d skin;
@@ -310,7 +310,7 @@ void deform(const Skin2d& skin, std::span<const Vector2f> particles, std::span<V
       y += pull.along_y * particle;
     }
     positions[i] = position;
-    // Slopes turn as normals do: by the cofactors of what stretches the cell.
+    // Slopes transform as normals do: by the cofactors of the cell's deformation.
     const Vector2f& slope = skin.slopes[i];
     slopes[i] =
         Vector2f(y.y() * slope.x() - x.y() * slope.y(), x.x() * slope.y() - y.x() * slope.x()) / skin.spacing;

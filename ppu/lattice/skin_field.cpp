@@ -9,9 +9,9 @@ namespace {
 using Eigen::Vector2f;
 using Eigen::Vector2i;
 
-constexpr int kPadding = 2;  // cells around the lattice in which the field is sampled
+constexpr int kPadding = 2;  // cells around the lattice in which the field is sampled, too
 
-/// From 1 inside to 0 outside of an edge, as steep on it as smoothing makes the edges of cells.
+/// Falls from 1 inside to 0 outside of an edge, as steeply at the edge as smoothed edges of cells.
 float fall_at(float outside) {
   constexpr float kReach = 1.5f, kHalf = SkinField::kEdge;
   const float t = std::clamp(outside / kReach, -1.0f, 1.0f), square = t * t;
@@ -33,7 +33,7 @@ SkinField SkinField::of_cells(const CellsByIndex& cells, float margin) {
   for (int x = 0; x < field.size_.x(); ++x) {
     for (int y = 0; y < field.size_.y(); ++y) field.value(x, y) = field.covered({x, y}, margin);
   }
-  // A standard deviation of six tenths of a cell makes any stairs smooth. What is not wider than that needs less.
+  // A standard deviation of six tenths of a cell smooths any stairs. A narrow margin needs less.
   field.smooth(margin >= 0.35f ? 6 : 2);
   field.open_gaps();
   return field;
@@ -49,9 +49,9 @@ SkinField SkinField::of_shape(const CellsByIndex& cells, float margin, const Out
 }
 
 SkinField SkinField::part(const std::vector<bool>& chosen) const {
-  constexpr float kInside = 0.25f;  // so much of the shape counts: a little more than is drawn
+  constexpr float kInside = 0.25f;  // this much of the shape counts: slightly more than is drawn
   constexpr float kLeast = 1e-3f;
-  constexpr int kPasses = 3;  // a single cell stays a spot
+  constexpr int kPasses = 3;  // few, so that a single cell stays visible
   SkinField in_part(*this), in_shape(*this);
   for (int x = 0; x < size_.x(); ++x) {
     for (int y = 0; y < size_.y(); ++y) {
@@ -62,7 +62,7 @@ SkinField SkinField::part(const std::vector<bool>& chosen) const {
   }
   in_part.smooth(kPasses);
   in_shape.smooth(kPasses);
-  // The mean over what is within the shape: lines between parts run straight into its edge.
+  // The mean is taken within the shape only, so that lines between parts run straight into its edge.
   for (std::size_t i = 0; i < values_.size(); ++i) {
     const float share = in_part.values_[i] / std::max(in_shape.values_[i], kLeast);
     in_part.values_[i] = std::min(values_[i], share);
@@ -85,7 +85,7 @@ Vector2f SkinField::slope(int x, int y) const {
          Vector2f(clamped(x - 1, y) - clamped(x + 1, y), clamped(x, y - 1) - clamped(x, y + 1));
 }
 
-/// Whether a sample lies within the cells, wider by the margin: 0 or 1, and between near the edge.
+/// Whether a sample lies within the cells, wider by the margin: 1 or 0, and a value between near the edge.
 float SkinField::covered(const Vector2i& sample, float margin) const {
   const Vector2f position = grid_position(sample.x(), sample.y());
   const Vector2i cell = cell_of(sample);
@@ -124,12 +124,12 @@ void SkinField::smooth_along(int axis) {
   }
 }
 
-/// Whether a free cell has cells on both sides of it along an axis.
+/// Whether a free cell lies between two cells along an axis.
 bool SkinField::is_gap(const Vector2i& cell, const Vector2i& axis) const {
   return !cells_.has(cell) && cells_.has(cell - axis) && cells_.has(cell + axis);
 }
 
-/// Keeps both sides of a gap of one cell apart, however wide the margin. A mere notch, one cell deep, is filled.
+/// Keeps both sides of a gap of one cell apart, however wide the margin. A notch only one cell deep is filled.
 void SkinField::open_gaps() {
   constexpr float kHalfGap = 0.12f, kSteepness = 0.65f;
   for (int x = 0; x < size_.x(); ++x) {
@@ -141,7 +141,7 @@ void SkinField::open_gaps() {
         const Vector2i along(axis.y(), axis.x());
         const bool here = is_gap(cell, axis), before = is_gap(cell - along, axis),
                    behind = is_gap(cell + along, axis);
-        // Or beyond the end of one: the margins of its sides would close it there.
+        // Also beyond the end of a gap: the margins of its sides would close it there.
         const bool end =
             (before && is_gap(cell - 2 * along, axis)) || (behind && is_gap(cell + 2 * along, axis));
         if ((here && (before || behind)) || end)

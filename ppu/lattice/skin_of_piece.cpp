@@ -21,8 +21,9 @@ constexpr std::uint32_t kNowhere = std::numeric_limits<std::uint32_t>::max();
 
 /// Makes the skin of one piece.
 ///
-/// Each triangle of the whole's skin belongs to one cell, and goes with it. Where two triangles have a side in common, they stay together if
-/// their cells do: then the corners at its ends stay one vertex. So a vertex of the whole becomes one for each fan of triangles around it.
+/// Each triangle of the whole's skin belongs to one cell, and goes to that cell's piece. Two triangles with a common side stay joined if
+/// their cells do: then the corners at the side's ends stay one vertex. So a vertex of the whole becomes one vertex for each fan of
+/// triangles around it.
 class PieceSkinMaker {
  public:
   PieceSkinMaker(const Skin2d& whole, const Lattice<2>& lattice, const Lattice<2>& piece)
@@ -47,7 +48,7 @@ class PieceSkinMaker {
   }
   std::uint32_t cell_of(std::uint32_t corner) const { return whole_.cells[taken_[corner / 3]]; }
 
-  /// Whether two cells of the piece have all particles in common that they had in the whole.
+  /// Whether two cells of the piece still share all particles that they shared in the whole.
   bool hold(std::uint32_t a, std::uint32_t b) const {
     const auto in_common = [](const auto& of_a, const auto& of_b) {
       return std::count_if(of_a.begin(), of_a.end(), [&](std::uint32_t particle) {
@@ -59,7 +60,7 @@ class PieceSkinMaker {
   }
 
   void unite_corners() {
-    // From the side's ends in the whole, in the direction of one triangle, to its corner there.
+    // Maps the ends of a side in the whole, in the direction of one triangle, to this triangle's corner at the begin.
     std::map<std::array<std::uint32_t, 2>, std::uint32_t> begins;
     for (std::uint32_t corner = 0; corner < fans_.numbers(); ++corner)
       begins.emplace(std::array{vertex_of(corner), vertex_of(next(corner))}, corner);
@@ -74,7 +75,7 @@ class PieceSkinMaker {
   /// The next corner of the same triangle.
   static std::uint32_t next(std::uint32_t corner) { return corner % 3 == 2 ? corner - 2 : corner + 1; }
 
-  /// Of the cells of a vertex: the one that it hangs in in the whole, else the nearest.
+  /// Chooses a cell for each vertex: the one to which the vertex belongs in the whole, else the nearest.
   void add_vertices() {
     std::map<std::uint32_t, std::uint32_t> cell_of_set;
     for (std::uint32_t corner = 0; corner < fans_.numbers(); ++corner) {
@@ -105,7 +106,8 @@ class PieceSkinMaker {
     return (-in).cwiseMax(in - Vector2f::Ones()).cwiseMax(Vector2f::Zero()).squaredNorm();
   }
 
-  /// Sides of one triangle only, in its direction: at each vertex one begins, as its triangles are one fan.
+  /// Outlines consist of sides of one triangle only, in its direction. One of them begins at each vertex, as a vertex's triangles form one
+  /// fan.
   void add_outlines() {
     std::set<std::array<std::uint32_t, 2>> sides;
     for (const auto& triangle : skin_.triangles)
@@ -129,9 +131,9 @@ class PieceSkinMaker {
   const Lattice<2>& lattice_;
   const Lattice<2>& piece_;
   CellCurves curves_;
-  std::vector<std::uint32_t> cells_;  // of each of the whole: its number in the piece, or kNowhere
-  std::vector<std::uint32_t> taken_;  // triangles of the whole
-  // Of each corner of these, 3 triangle + corner: one that is the same vertex. The first one of a vertex stands for it.
+  std::vector<std::uint32_t> cells_;  // for each cell of the whole: its number in the piece, or kNowhere
+  std::vector<std::uint32_t> taken_;  // triangles of the whole that this piece has
+  // For each corner of these, 3 triangle + corner: the set of corners that are one vertex. The lowest corner represents it.
   DisjointSets fans_;
   Skin2d skin_;
 };

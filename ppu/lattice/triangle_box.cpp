@@ -17,8 +17,7 @@ Vector3d cross(const Vector3d& a, const Vector3d& b) {
 
 double dot(const Vector3d& a, const Vector3d& b) { return a.x() * b.x() + a.y() * b.y() + a.z() * b.z(); }
 
-/// Whether the shadows of the triangle and of the cube about 0 on this axis are apart. A zero axis separates
-/// nothing.
+/// Whether the projections of the triangle and of the cube about 0 on this axis are disjoint. A zero axis separates nothing.
 bool separates(const Vector3d& axis, const std::array<Vector3d, 3>& triangle, double half_edge) {
   const double p0 = dot(axis, triangle[0]), p1 = dot(axis, triangle[1]), p2 = dot(axis, triangle[2]);
   const double radius = half_edge * (std::abs(axis.x()) + std::abs(axis.y()) + std::abs(axis.z()));

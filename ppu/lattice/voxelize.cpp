@@ -18,13 +18,12 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3i;
 
-/// How far the mesh may stand out of the lattice, or a triangle pass a cell and still touch it, in cells:
-/// room for the rounding of coordinates in float over kMaxLatticeCellsPerAxis. A box of ten cells is ten
-/// cells long.
+/// How far, in cells, the mesh may stand out of the lattice, or a triangle may miss a cell and still touch it: room for the rounding of
+/// float coordinates over kMaxLatticeCellsPerAxis. So a box of ten cells is ten cells long.
 constexpr double kHair = 5e-5;
 
-/// In cells: what stands out of the grid by more is put on its side, before the touch of no cell reaches it.
-/// The grid lets the mesh stand out by a hair, and the rounding of its origin may add as much again.
+/// In cells: a point that stands out of the grid by more is moved onto its side, as otherwise it would be too far from any cell to touch
+/// it. The grid lets the mesh stand out by kHair, and the rounding of its origin may add as much again.
 constexpr double kMostOutside = 0.9 * kHair;
 
 std::string metres(double value) {
@@ -34,7 +33,7 @@ std::string metres(double value) {
   return text.str();
 }
 
-/// The grid that covers the mesh, and what is known of each of its cells.
+/// The grid that covers the mesh, with the kind of each of its cells.
 class Grid {
  public:
   Grid(const Eigen::Vector3f& origin, double spacing, const Vector3i& size)
@@ -68,7 +67,7 @@ class Grid {
         }
   }
 
-  /// Finds what can be reached from outside through faces of cells, without passing the surface.
+  /// Finds the cells that can be reached from outside through faces of cells, without crossing the surface.
   void flood_outside() {
     std::vector<Vector3i> front{Vector3i(-1, -1, -1)};  // a corner of the layer of padding
     kinds_[number(front.back())] = Kind::kOutside;
@@ -127,7 +126,7 @@ class Grid {
     return point;
   }
 
-  /// Of a cell from -1 to size: the layer of padding included.
+  /// The index of a cell; its coordinates are -1 to size, as the layer of padding is included.
   std::size_t number(const Vector3i& cell) const {
     SC_ASSERT(cell.minCoeff() >= -1 && (size_ - cell).minCoeff() >= 0, "cell ({}, {}, {}) of {} x {} x {}",
               cell.x(), cell.y(), cell.z(), size_.x(), size_.y(), size_.z());
@@ -147,7 +146,7 @@ class Grid {
   std::vector<Kind> kinds_;
 };
 
-/// The number of cells along each axis, or the sentence that says why not.
+/// The number of cells along each axis. @throws if there are too many; the message says why
 Vector3i grid_size(const Vector3d& extent, double spacing) {
   const double longest = extent.maxCoeff();
   const Vector3d in_cells = extent / spacing;
@@ -165,7 +164,7 @@ Vector3i grid_size(const Vector3d& extent, double spacing) {
   return size;
 }
 
-/// A float far from 0 is too coarse to say which cell it is in.
+/// A float far from 0 is too coarse to tell the cell.
 void check_distance(double farthest, double spacing) {
   constexpr double kMostCells = 800;  // its rounding, 2^-24 of it, is kHair
   if (farthest > kMostCells * spacing)
@@ -182,7 +181,7 @@ void check_particles(std::size_t particles, double spacing) {
       std::to_string(kMaxLatticeParticles<3>) + " particles; use about " + metres(fits) + " or more");
 }
 
-/// The cells that the mesh occupies. @throws what voxelize() throws of its arguments
+/// The cells that the mesh occupies. @throws as voxelize() about its arguments
 Grid occupied_cells(const TriangleMesh& mesh, float cell_size) {
   const double spacing = static_cast<double>(cell_size);
   if (!(spacing > 0) || !std::isfinite(spacing))

@@ -76,7 +76,7 @@ MatchingPlan<Real, kDimension>::MatchingPlan(const Lattice<kDimension>& lattice,
   }
   noise_floor_ = 4 * std::numeric_limits<Real>::epsilon() * farthest * farthest;
 
-  // Summed from the rounded constants, so that a body at rest has its centres exactly where they belong.
+  // Sums up the rounded constants, so that a body at rest has its centres exactly where they belong.
   for (std::size_t r = 0; r < sums_->regions(); ++r) {
     double mass = 0;
     Exact moment = Exact::Zero();
@@ -104,7 +104,7 @@ void MatchingPlan<Real, kDimension>::set_rest(std::span<const Eigen::Matrix<doub
   centre /= mass;
   for (std::size_t i = 0; i < rest.size(); ++i) particles_[i].x0 = (rest[i] - centre).template cast<Real>();
 
-  // From the rounded constants, as above; with sums that regions share.
+  // Sums up the rounded constants, as above, but with sums that regions share.
   std::vector<Exact> moments(rest.size()), of_regions(regions_.size());
   for (std::size_t i = 0; i < rest.size(); ++i)
     moments[i] = static_cast<double>(particles_[i].modified_mass) * particles_[i].x0.template cast<double>();

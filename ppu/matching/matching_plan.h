@@ -1,6 +1,5 @@
 #pragma once
-// The constants of shape matching, in two and three dimensions: what a body's particles and regions are at
-// rest. Letters as in shape_matching.h.
+// The constants of shape matching in two and three dimensions: particles and regions of a body at rest. Letters as in shape_matching.h.
 
 #include <Eigen/Core>
 #include <cstddef>
@@ -13,8 +12,8 @@
 
 namespace softcell::ppu {
 
-/// Constants of particles and regions at rest: of all bodies of one model, or a copy, of a plastic body with another rest
-/// shape. Copies share what does not depend on it.
+/// Constants of particles and regions at rest. All bodies of one model share a plan; a plastic body has a copy with its own rest shape.
+/// Copies share the parts that do not depend on the rest shape.
 /// @tparam kDimension  2 or 3
 template <typename Real, int kDimension>
 class MatchingPlan {
@@ -49,12 +48,12 @@ class MatchingPlan {
   std::span<const Particle> particle_constants() const { return particles_; }
   std::span<const Region> region_constants() const { return regions_; }
 
-  /// Another rest shape for the same particles: x0 and c0 change.
+  /// Sets another rest shape for the same particles: changes x0 and c0.
   /// @param rest  finite positions, metres, in any frame
   void set_rest(std::span<const Eigen::Matrix<double, kDimension, 1>> rest);
 
-  /// Below this times M_r, what a region's rotation is found from is rounding noise: all its particles sit on
-  /// one point. Square metres.
+  /// Below this times M_r, the matrix from which a region's rotation is found is rounding noise: all the region's particles are at one
+  /// point. Square metres.
   Real noise_floor() const { return noise_floor_; }
 
  private:

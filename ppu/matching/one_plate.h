@@ -1,12 +1,12 @@
 #pragma once
-// A lattice in two dimensions as SumPlan takes it.
+// Converts a lattice in two dimensions to the form that SumPlan takes.
 
 #include <Eigen/Core>
 #include <vector>
 
 namespace softcell::ppu {
 
-/// With all x equal, a plate is a whole region and a bar one of its columns: two levels of sums.
+/// All x are equal, so a plate is a whole region and a bar is one of its columns: two levels of sums.
 inline std::vector<Eigen::Vector3i> as_one_plate(const std::vector<Eigen::Vector2i>& particles) {
   std::vector<Eigen::Vector3i> grid;
   grid.reserve(particles.size());

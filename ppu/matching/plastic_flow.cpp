@@ -18,7 +18,7 @@ using Eigen::Quaterniond;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-// What turns: quaternions in both dimensions, in two about z.
+// Rotations are quaternions in both dimensions; in two dimensions about z.
 
 /// @param by  of any length but 0
 Vector3d turned(const Quaterniond& by, const Vector3d& v) {
@@ -34,10 +34,10 @@ Quaterniond rotation_of(const Matrix2d& matrix, const Quaterniond& start) {
   const double cosine = matrix.trace(), sine = matrix(1, 0) - matrix(0, 1);
   const double length = std::sqrt(cosine * cosine + sine * sine);
   if (!(length > 0)) return start;
-  const Quaterniond q(length + cosine, 0, 0, sine);  // of half the angle
+  const Quaterniond q(length + cosine, 0, 0, sine);  // for half the angle
   return q.norm() > 1e-9 * length ? q.normalized() : Quaterniond(0, 0, 0, 1);
 }
-/// To about 1e-6, far below any yield.
+/// Exact to about 1e-6, far below any yield.
 Quaterniond rotation_of(const Matrix3d& matrix, const Quaterniond& start) {
   Eigen::Quaternionf rotation = start.cast<float>();
   update_rotation<float>(matrix.cast<float>(), rotation);
@@ -51,7 +51,7 @@ Quaterniond halfway(const Quaterniond& a, const Quaterniond& b) {
   return Quaterniond(a.coeffs() + smaller_turn(a, b) * b.coeffs());
 }
 
-/// From a to b in a's frame, axis times about the angle: 4 sin(angle / 4) takes its place, which is less than 1 % less up to
+/// Rotation from a to b in a's frame, as axis times angle. The angle is replaced by 4 sin(angle / 4), which is less than 1 % smaller up to
 /// 1 rad.
 Vector3d spin_between(const Quaterniond& a, const Quaterniond& b) {
   const Quaterniond turn = halfway(Quaterniond::Identity(), a.conjugate() * b);
@@ -71,7 +71,7 @@ Eigen::Matrix<double, 1, 1> own_spin(const Vector3d& spin, const Vector2d&) {
 }
 Vector3d own_spin(const Vector3d& spin, const Vector3d&) { return spin; }
 
-/// e^2 and g e^2 of the edges of particles, added up.
+/// The sums of e^2 and g e^2 over the edges of particles.
 struct Weighted {
   double weight = 0, flowing = 0;
   Weighted& operator+=(const Weighted& other) {
@@ -99,7 +99,7 @@ Eigen::Matrix<double, kDimension, kDimension> mean_edges(
   return means / static_cast<double>(corners.size() / 2);
 }
 
-/// In spacing^n.
+/// The volume of a cell in spacing^n.
 template <int kDimension>
 double volume_of(const RestLattice<kDimension>& lattice, std::size_t cell,
                  std::span<const Eigen::Matrix<double, kDimension, 1>> x) {
@@ -129,7 +129,7 @@ std::size_t PlasticFlow<kDimension>::cells_that_contacts_hold() const {
   return held;
 }
 
-/// Calls visit(a, b) for each edge, and behind them for each diagonal of a cell.
+/// Also forgets up to which difference no close check is needed.
 template <int kDimension>
 void PlasticFlow<kDimension>::set_rest(std::span<const Exact> rest) {
   SC_ASSERT(rest.size() == lattice_->particles(), "{} positions at rest of {} particles", rest.size(),
@@ -147,8 +147,8 @@ void PlasticFlow<kDimension>::find_inverse_squares() {
   });
 }
 
-/// At the yield an edge is at least 0.67 of it longer or shorter where the volume stays, a diagonal 0.44 where a square is sheared. Of a
-/// length's square it is twice as much.
+/// At the yield, an edge is longer or shorter by at least 0.67 of the yield if the volume stays the same, and a diagonal by 0.44 if a
+/// square is sheared. The square of a length changes by twice as much.
 template <int kDimension>
 float PlasticFlow<kDimension>::stretch_of(float edges, float diagonals) {
   return std::max(edges / 1.2f, diagonals / 0.8f);
@@ -189,7 +189,7 @@ void PlasticFlow<kDimension>::find_rotations(std::span<const Vector> x) {
     sums[edge.from] += product;
     sums[edge.to] += product;
   }
-  // The neighbour's is a good start, and is the same whatever was before.
+  // The neighbour's rotation is a good start, and does not depend on earlier steps.
   Quaterniond start = Quaterniond::Identity();
   for (std::size_t i = 0; i < sums.size(); ++i) start = rotations_[i] = rotation_of(sums[i], start);
 }
@@ -233,13 +233,13 @@ void PlasticFlow<kDimension>::find_strains(std::span<const Vector> x) {
   }
 }
 
-/// How far each edge flows and turns.
+/// Computes how far each edge flows and rotates.
 template <int kDimension>
 void PlasticFlow<kDimension>::find_flow(const SumPlan& sums, const Plasticity& plasticity, double share) {
   const double yield = static_cast<double>(plasticity.yield);
   const double longest = lattice_->spacing() * (1 + static_cast<double>(plasticity.limit));
   const double shortest = lattice_->spacing() / (1 + static_cast<double>(plasticity.limit));
-  std::vector<double> part(d_.size());  // of the flow, up to the limit
+  std::vector<double> part(d_.size());  // share of the flow up to the limit
   for (std::size_t l = 0; l < d_.size(); ++l) {
     rate_[l] = strain_[l] > yield ? share * (1 - yield / strain_[l]) : 0;
     flow_[l] = rate_[l] * eta_[l];
@@ -248,7 +248,7 @@ void PlasticFlow<kDimension>::find_flow(const SumPlan& sums, const Plasticity& p
     if (after > std::max(longest, before)) part[l] = std::max(0.0, (longest - before) / (after - before));
     if (after < std::min(shortest, before)) part[l] = std::max(0.0, (before - shortest) / (before - after));
   }
-  // The edges of a cell stop together: alone, one would lose what the others need for the volume.
+  // The edges of a cell stop together: if only one stopped, the volume would lose what the others need.
   std::vector<double> least(d_.size(), 1.0);
   for (const auto& edges : lattice_->edges_of_cell()) {
     double of_cell = 1;
@@ -275,7 +275,7 @@ void PlasticFlow<kDimension>::find_flow(const SumPlan& sums, const Plasticity& p
     turn_[l] = (turning(lattice_->edges()[l].from) + turning(lattice_->edges()[l].to)) / 2;
 }
 
-/// Takes from each edge's flow what would change the volume of its cells; cells whose volume has changed go back.
+/// Subtracts from each edge's flow what would change the volume of its cells. Cells whose volume has changed before go back.
 template <int kDimension>
 void PlasticFlow<kDimension>::keep_volume() {
   constexpr double kBack = 0.5;
@@ -292,7 +292,7 @@ void PlasticFlow<kDimension>::keep_volume() {
   for (std::size_t l = 0; l < d_.size(); ++l) flow_[l] -= trace[l] / kDimension * d_[l];
 }
 
-/// The shape whose edges come nearest to those that have flowed, of the same volume.
+/// The shape whose edges are nearest to those that have flowed, scaled to the same volume.
 template <int kDimension>
 auto PlasticFlow<kDimension>::new_shape() const -> std::vector<Exact> {
   const auto edges = lattice_->edges();
@@ -320,7 +320,7 @@ auto PlasticFlow<kDimension>::new_shape() const -> std::vector<Exact> {
   double after = 0;
   for (std::size_t cell = 0; cell < lattice_->corners().size(); ++cell)
     after += volume_of<kDimension>(*lattice_, cell, shape);
-  if (!(after > 0.5 * volume_)) return shape;  // refused for its cells
+  if (!(after > 0.5 * volume_)) return shape;  // its cells will be refused
   double scale = 1;                            // Newton's method for scale^n after = before
   for (int i = 0; i < 6; ++i) {
     const double power = kDimension == 2 ? scale : scale * scale;
@@ -330,7 +330,7 @@ auto PlasticFlow<kDimension>::new_shape() const -> std::vector<Exact> {
   return shape;
 }
 
-/// Stops the flow of edges of cells that `shape` presses flat or turns inside out. @return whether there are any
+/// Stops the flow of edges whose cells `shape` presses flat or turns inside out. @return whether there are any
 template <int kDimension>
 bool PlasticFlow<kDimension>::stop_bad_cells(std::span<const Exact> shape) {
   constexpr double kLeastAtCorner = 0.25;  // spacing^n
@@ -365,9 +365,9 @@ bool PlasticFlow<kDimension>::flow(std::span<const Vector> x, const SumPlan& sum
   SC_ASSERT(share >= 0 && share <= 1, "a share of {}", share);
   find_rotations(x);
   find_strains(x);
-  // Not finite: left to shape matching, which says so.
+  // Not finite: left to shape matching, which reports it.
   if (!std::isfinite(largest_strain_)) return false;
-  // What is a hair above the yield would flow for ever, and less and less.
+  // A strain barely above the yield would flow for ever, less and less.
   constexpr double kHair = 1.002, kCautious = 0.97;
   const double yield = static_cast<double>(plasticity.yield);
   if (!(largest_strain_ > kHair * yield)) {

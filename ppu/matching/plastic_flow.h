@@ -5,26 +5,26 @@
 // edge now:
 //
 //     R_i                                 rotation of sum D d^T over the edges of particle i
-//     eps = R^T D - d                     what is not rotation, seen in the rest shape's frame; R halfway between the ends' R
+//     eps = R^T D - d                     deformation without rotation, in the rest shape's frame; R halfway between the ends' R
 //     w   = axis * angle of R_a^T R_b     how much the body is bent along the edge
 //     eta = eps - tr / n  d               without the change of volume; tr is the sum of relative elongations over the n axes:
 //                                         its own, and the means over its cells' edges along the others
 //     e   = |eta| / |d| * n / (n - 1)     the strain. In a bar that is pulled, the elongation
 //     g   = share (1 - yield / e)         0 below the yield. share = 1 - exp(-creep h)
 //
-// An edge flows by g eta, and turns by the mean of g over the regions of its ends, weighted by e^2, which is that
-// of the elastic energy. The rest shape's new edges are Q (d + g eta), less what would change the volume of cells, Q the turn. No
-// shape has exactly these edges; the one whose edges come nearest in least squares follows from two systems of equations:
+// An edge flows by g eta. It also rotates, by the mean of g over the regions of its ends, weighted by e^2, to which the elastic energy is
+// proportional. The rest shape's new edges are Q (d + g eta), minus any part that would change the volume of cells; Q is the rotation. No
+// shape has exactly these edges; two systems of equations give the one whose edges are nearest in least squares:
 //
 //     omega_b - omega_a = g w            for every edge: the turn of each particle
 //     u_b - u_a = Q (d + g eta) - d      for every edge: the displacement, y += u
 //
-// Both have the Laplacian of the edges, which never changes. So a dent is local, and what lies behind a bend turns with it
-// as a whole. Velocities and positions stay as they are; shape matching keeps both momenta for any rest shape.
+// Both systems have the Laplacian of the edges as their matrix, which never changes. So a dent stays local, and everything beyond a bend
+// rotates with it as a whole. Velocities and positions stay as they are; shape matching keeps both momenta for any rest shape.
 //
-// Why the rest shape as a whole, and not an affine deformation of each region (Mueller et al. 2005): bending is no affine
-// deformation of a region. Of the energy that regions of 5 x 5 x 5 resist the bending of a plate of 5 particles with, affine parts
-// are a quarter; three quarters would spring back, in thin plates all of it.
+// Why the rest shape as a whole, and not an affine deformation of each region (Mueller et al. 2005): bending is not an affine deformation
+// of a region. When a plate of 5 particles bends, a quarter of the energy with which regions of 5 x 5 x 5 resist is affine; the other three
+// quarters would spring back, and in thin plates all of it.
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -39,7 +39,7 @@
 
 namespace softcell::ppu {
 
-/// The rest shape of one body. One thread at a time.
+/// The rest shape of one body. Used by one thread at a time.
 template <int kDimension>
 class PlasticFlow {
  public:
@@ -55,27 +55,28 @@ class PlasticFlow {
   /// that turns would turn faster and faster.
   std::size_t cells_that_contacts_hold() const;
 
-  /// A quick look at the lengths of edges and diagonals. @return false: no strain is above `yield`
+  /// A quick check of the lengths of edges and diagonals. @return false: no strain is above `yield`
   bool may_yield(std::span<const Vector> x, float yield);
-  /// The same by what somebody else has seen: spares most looks.
-  /// @param stretch  stretch_of() what he saw, within kSeenWithin
-  /// @return what may_yield() would return; if that is false, what it would remember is remembered. Nothing: somebody has to look closely
+  /// The same from lengths that an SPE has checked: saves most quick checks.
+  /// @param stretch  stretch_of() the SPE's result, exact to kSeenWithin
+  /// @return what may_yield() would return; if that is false, the internal state is updated likewise. Nothing: the caller has to check the
+  /// lengths itself
   std::optional<bool> may_yield(float stretch, float yield);
-  /// What counts of the lengths: the largest |now^2 / rest^2 - 1| of edges, and of diagonals.
+  /// The measure of strain in lengths, from the largest |now^2 / rest^2 - 1| of edges, and of diagonals.
   static float stretch_of(float edges, float diagonals);
-  /// The rest shape that somebody else has is rounded, and so are his sums: of bodies of a hundred cells by 1e-5.
+  /// The SPE's rest shape is rounded, and so are its sums: by 1e-5 for bodies of a hundred cells.
   static constexpr float kSeenWithin = 0.002f;
 
-  /// Moves the rest shape towards the shape that the body has, where it has yielded. The volume of the whole stays as it
-  /// is, and no cell of the rest shape gets less than kLeastRestVolume.
+  /// Moves the rest shape towards the body's present shape where the body has yielded. The total volume stays the same, and no cell of the
+  /// rest shape gets a volume below kLeastRestVolume.
   /// @param x        positions, metres
   /// @param sums     of the body's regions
-  /// @param share    0..1: of what is above the yield
+  /// @param share    0..1: how much of the strain above the yield flows
   /// @return         whether the rest shape has changed
   bool flow(std::span<const Vector> x, const SumPlan& sums, const Plasticity& plasticity, double share);
 
-  /// Of a cell of the rest shape, in spacing^n: the volume that its mean edges span. A cell counts as crushed
-  /// below 0.5 (contacts/crushed_cells.h).
+  /// The least volume of a cell of the rest shape, in spacing^n: the volume that its mean edges span. A cell counts as crushed below 0.5
+  /// (contacts/crushed_cells.h).
   static constexpr double kLeastRestVolume = 0.7;
 
  private:
@@ -86,7 +87,7 @@ class PlasticFlow {
   void find_inverse_squares();
   void find_rotations(std::span<const Vector> x);
   void find_strains(std::span<const Vector> x);
-  /// The relative elongation of a cell along each axis, for edges that get longer by `of_edge`.
+  /// The relative elongation of a cell along each axis if its edges get longer by `of_edge`.
   Exact elongations(const typename RestLattice<kDimension>::EdgesOfCell& edges,
                     const std::vector<Exact>& of_edge) const;
   void find_flow(const SumPlan& sums, const Plasticity& plasticity, double share);
@@ -104,8 +105,8 @@ class PlasticFlow {
   std::vector<double> strain_, rate_, turn_;
   double largest_strain_ = 0;
   double volume_ = 0;  // of the rest shape, spacing^n
-  // How much lengths differed at the last quick look; up to which difference a body that did not yield is not looked
-  // at closely again, until it is much less.
+  // stretch_: how much lengths differed at the last quick check. calm_: up to this difference, a body that did not yield is not checked
+  // closely again, until the difference is much less.
   float stretch_ = 0, calm_ = 0;
   static constexpr float kForget = 0.8f;
 };

@@ -15,7 +15,7 @@ Csr find_regions(const Csr& neighbours, int half_width) {
                              std::to_string(kMaxHalfWidth));
   const auto particles = static_cast<std::uint32_t>(neighbours.size());
   Csr regions;
-  std::vector<std::uint32_t> visited(particles, particles);  // the centre whose search came here last
+  std::vector<std::uint32_t> visited(particles, particles);  // the last centre whose search came here
   std::vector<std::uint32_t> found;
   for (std::uint32_t centre = 0; centre < particles; ++centre) {
     found.assign(1, centre);

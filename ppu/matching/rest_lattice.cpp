@@ -8,10 +8,10 @@
 
 namespace softcell::ppu {
 
-/// L D L^T of the Laplacian of the edges, in an order that leaves L sparse. A little is added to the diagonal, which a constant in any
-/// connected part would else make 0: of a chain of 256 edges the longest wave loses 1e-4 by it.
+/// L D L^T of the Laplacian of the edges, in an order that leaves L sparse. A little is added to the diagonal; without it, a constant in a
+/// connected part would make an element of D 0. In a chain of 256 edges the longest wave loses 1e-4 by that.
 ///
-/// Eigen solves for one column after the other; here they lie side by side, and L is read once.
+/// Eigen solves for one column after the other; here the columns lie side by side, and L is read once.
 template <int kDimension>
 struct RestLattice<kDimension>::Factor {
   struct Entry {
@@ -19,7 +19,7 @@ struct RestLattice<kDimension>::Factor {
     std::uint32_t row;
   };
   std::vector<std::uint32_t> place_of;      // of each particle
-  std::vector<std::uint32_t> first_entry;   // of each column of L, below its diagonal of ones; and their end
+  std::vector<std::uint32_t> first_entry;   // of each column of L, below its diagonal of ones; and the end
   std::vector<Entry> entries;               // column by column
   std::vector<double> inverse_of_diagonal;  // of D
 
@@ -109,7 +109,7 @@ template <int kDimension>
 template <int kNumbers>
 auto RestLattice<kDimension>::integrate(const Values<kNumbers>& wanted) const -> Values<kNumbers> {
   SC_ASSERT(wanted.size() == edges_.size(), "{} differences along {} edges", wanted.size(), edges_.size());
-  using Row = Eigen::Matrix<double, kNumbers == 3 ? 4 : kNumbers, 1>;  // whole vectors of the host's
+  using Row = Eigen::Matrix<double, kNumbers == 3 ? 4 : kNumbers, 1>;  // whole vector registers of the host
   std::vector<Row> sums(particles_, Row::Zero());
   for (std::size_t l = 0; l < edges_.size(); ++l) {
     sums[factor_->place_of[edges_[l].from]].template head<kNumbers>() -= wanted[l];

@@ -1,5 +1,5 @@
 #pragma once
-// What plastic bodies of one lattice share: its edges along the axes, and the equations from which a rest shape follows.
+// Data that plastic bodies of one lattice share: its edges along the axes, and the equations that determine a rest shape.
 
 #include <Eigen/Core>
 #include <array>
@@ -12,7 +12,7 @@
 
 namespace softcell::ppu {
 
-/// The most particles of a plastic body: solving for a rest shape of so many takes some 4 ms.
+/// The most particles of a plastic body: solving for a rest shape of this size takes some 4 ms.
 inline constexpr std::uint32_t kMaxPlasticParticles = 4096;
 
 /// Immutable; any thread may read it.
@@ -35,7 +35,7 @@ class RestLattice {
 
   std::span<const Edge> edges() const { return edges_; }
   std::span<const EdgesOfCell> edges_of_cell() const { return edges_of_cell_; }
-  /// 1 / how many cells have the edge as an edge.
+  /// 1 / the number of cells that have the edge.
   std::span<const double> inverse_cells() const { return inverse_cells_; }
   std::size_t particles() const { return particles_; }
   double spacing() const { return spacing_; }  ///< metres
@@ -43,7 +43,7 @@ class RestLattice {
     return corners_;
   }
 
-  /// Calls visit(a, b) for pairs of particles whose distances say how much a body is strained: ends of edges, then opposite corners of cells.
+  /// Calls visit(a, b) for pairs of particles whose distance measures strain: the ends of edges, then opposite corners of cells.
   template <typename Visit>
   void each_length(const Visit& visit) const {
     for (const Edge& edge : edges_) visit(edge.from, edge.to);
@@ -51,12 +51,12 @@ class RestLattice {
     for (const auto& corners : corners_)
       for (std::uint32_t k = 0; 2 * k < kLast; ++k) visit(corners[k], corners[kLast - k]);
   }
-  /// How many pairs each_length() visits.
+  /// The number of pairs that each_length() visits.
   std::size_t lengths() const { return edges_.size() + corners_.size() * Lattice<kDimension>::kCorners / 2; }
 
-  /// The values of the particles whose differences along the edges come nearest to what is wanted: least squares of
-  /// u_to - u_from - wanted. Of all such values those whose mean is 0 in each connected part.
-  /// @param wanted  of each edge    @return of each particle
+  /// The values at particles whose differences along the edges are nearest to the wanted ones: least squares of u_to - u_from - wanted. Of
+  /// all solutions, the one whose mean is 0 in each connected part.
+  /// @param wanted  for each edge    @return for each particle
   template <int kNumbers>
   using Values = std::vector<Eigen::Matrix<double, kNumbers, 1>>;
   template <int kNumbers>

@@ -20,20 +20,20 @@ template <>
 struct Tolerance<float> {
   static constexpr float kGoodEnough = 1e-5f;  // after the last iteration; above it, start cold
   static constexpr float kResidual = 1e-6f;    // |axial(R^T A)| at which to stop: some roundings of a float
-  static constexpr int kIterations = 6;        // one or two as a rule; more where s_j + s_k is small
+  static constexpr int kIterations = 6;        // usually one or two; more where s_j + s_k is small
 };
 template <>
 struct Tolerance<double> {
   static constexpr double kGoodEnough = 1e-12;
   static constexpr double kResidual = 1e-14;
-  static constexpr int kIterations = 12;  // each takes three digits, fewer where s_j + s_k is small
+  static constexpr int kIterations = 12;  // each gains three digits, fewer where s_j + s_k is small
 };
-constexpr double kRegularisation = 1e-3;  // mu, which keeps axes that nothing determines where they are
+constexpr double kRegularisation = 1e-3;  // mu: keeps axes in place that nothing determines
 constexpr double kLongestStep = 1.5;      // radians
-constexpr double kPastWeight = 1e-6;  // of the previous rotation in a cold start; far below what A determines
+constexpr double kPastWeight = 1e-6;  // of the previous rotation in a cold start; far below the weight of A
 
-/// The square of the norm is divided out: a quaternion in float is a unit only to some roundings, and the
-/// matrix would have four times its error.
+/// Divides by the square of the norm: a float quaternion has unit length only up to some rounding errors, and the matrix would have four
+/// times that error.
 template <typename Real>
 Matrix3<Real> matrix_of(const Eigen::Quaternion<Real>& q) {
   const Real w = q.w(), x = q.x(), y = q.y(), z = q.z();
@@ -67,8 +67,8 @@ void turn(Eigen::Quaternion<Real>& q, Real omega_x, Real omega_y, Real omega_z) 
   q.z() = tz * scale;
 }
 
-/// A / |A|, or false when |A| is at most `floor` or too small to divide by. In two steps: the square of the
-/// norm of a huge or tiny matrix is no number.
+/// A / |A|, or false if |A| is at most `floor` or too small to divide by. Works in two steps, as the square of the norm of a huge or tiny
+/// matrix is not finite, or 0.
 template <typename Real>
 bool normalise(const Matrix3<Real>& matrix, Real floor, Matrix3<Real>& normalised) {
   Real largest = 0;
@@ -141,7 +141,7 @@ Outcome refine(const Matrix3<Real>& a, Eigen::Quaternion<Real>& q, Matrix3<Real>
 /// The eigenvector of a symmetric matrix to its largest eigenvalue, by cyclic Jacobi rotations.
 Eigen::Vector4d largest_eigenvector(double (&k)[4][4]) {
   double v[4][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}};
-  for (int sweep = 0; sweep < 12; ++sweep) {  // six or fewer do
+  for (int sweep = 0; sweep < 12; ++sweep) {  // six or fewer suffice
     double off = 0, all = 0;
     for (int i = 0; i < 4; ++i)
       for (int j = 0; j < 4; ++j) {

@@ -10,7 +10,7 @@ namespace softcell::ppu {
 
 namespace {
 
-/// Lists of numbers, each kept once: equal lists get the same number, in the order of their first appearance.
+/// Numbers lists, and stores each once: equal lists get the same number, in the order of their first appearance.
 class UniqueLists {
  public:
   std::uint32_t number_of(std::span<const std::uint32_t> list) {
@@ -38,8 +38,7 @@ class UniqueLists {
   std::unordered_multimap<std::uint64_t, std::uint32_t> by_hash_;
 };
 
-/// One pass, because lists are ascending: centre r = 0, 1, ... must come up next in the list of each member
-/// of r.
+/// Needs one pass, because lists are ascending: each centre r = 0, 1, ... must be the next entry in the list of each member of r.
 void check_symmetry(const Csr& regions) {
   std::vector<std::uint32_t> next(regions.offsets.begin(), regions.offsets.end() - 1);
   for (std::uint32_t r = 0; r < regions.size(); ++r)

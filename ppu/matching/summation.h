@@ -1,5 +1,5 @@
 #pragma once
-// Sums over all regions at once, sharing the work between regions that overlap.
+// Sums over all regions at once. Regions that overlap share the work.
 //
 // A region is cut into plates (its particles of equal x), a plate into bars (equal x and y). Neighbouring
 // regions have most of their bars and plates in common, and each of those is added up only once:
@@ -7,13 +7,11 @@
 //     particles --> bars --> plates --> regions
 //     at most 6 w additions for each particle in place of (2w+1)^3 - 1
 //
-// Equal sets are one set, however irregular the lattice, and that includes regions: a sheet one cell thick
-// has half as many regions as particles. The naive sum adds bar by bar and plate by plate too, but shares
-// nothing; both give the same bits.
+// Equal sets are stored once, however irregular the lattice, and that includes regions: a sheet one cell thick has half as many regions as
+// particles. The naive sum also adds bar by bar and plate by plate, but shares nothing; both give the same bits.
 //
-// Membership is symmetric, so "sum over the particles of region r" and "sum over the regions that hold
-// particle i" are the same operator on a lattice with one region per particle: the way down needs no lists of
-// its own.
+// Membership is symmetric, so "sum over the particles of region r" and "sum over the regions that hold particle i" are the same operator on
+// a lattice with one region per particle: the way down needs no lists of its own.
 
 #include <span>
 #include <vector>
@@ -23,8 +21,7 @@
 
 namespace softcell::ppu {
 
-/// How the regions of one lattice are added up. Immutable after construction, shared by all bodies of a
-/// model.
+/// How the sums of one lattice's regions are made. Immutable after construction, shared by all bodies of a model.
 /// @source  [LSM07]
 class SumPlan {
  public:
@@ -53,7 +50,7 @@ class SumPlan {
   std::vector<std::uint32_t> region_of_;
 };
 
-/// Partial sums of one shared sum; sized once, used by every call.
+/// Partial sums of one shared sum; allocated once, used by every call.
 template <typename Payload>
 struct SumScratch {
   explicit SumScratch(const SumPlan& plan)

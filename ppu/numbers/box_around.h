@@ -2,7 +2,7 @@
 
 namespace softcell::ppu {
 
-/// The box around places. @tparam Box  has `low` and `high`, as Bounds  @pre there is a place
+/// The box around some places. @tparam Box  has `low` and `high`, as Bounds  @pre there is at least one place
 template <class Box, class Places>
 Box box_around(const Places& places) {
   Box box{*places.begin(), *places.begin()};

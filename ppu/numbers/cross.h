@@ -4,7 +4,7 @@
 
 namespace softcell::ppu {
 
-/// The cross product in two dimensions: above 0 where b lies counter-clockwise of a.
+/// The cross product in two dimensions: above 0 if b lies counter-clockwise of a.
 inline double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   return a.x() * b.y() - a.y() * b.x();
 }

@@ -1,10 +1,9 @@
 #pragma once
 // Sine, cosine and exponential with the same bits on every host.
 //
-// The C library's versions differ in the last bit from one library and processor to the next; whatever
-// reaches simulation state or a golden picture uses these. They are built from additions and multiplications,
-// each rounded once (the project compiles with -ffp-contract=off). std::sqrt is exact everywhere and needs no
-// twin.
+// The C library's versions differ in the last bit from one library and processor to the next. All code whose results reach simulation state
+// or a golden picture uses these functions instead. They consist of additions and multiplications, each rounded once (the project compiles
+// with -ffp-contract=off). std::sqrt is exact everywhere and needs no replacement.
 
 #include <bit>
 #include <cstdint>

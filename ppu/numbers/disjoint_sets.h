@@ -8,13 +8,13 @@
 
 namespace softcell::ppu {
 
-/// Sets of the numbers below a count, of which none is in two. A set is named by its lowest number. Used by one thread.
+/// Disjoint sets of the numbers below a count. A set is named by its lowest number. Used by one thread.
 class DisjointSets {
  public:
   DisjointSets() = default;
   explicit DisjointSets(std::size_t count) { reset(count); }
 
-  /// Each number becomes a set of its own. Allocates when there are more numbers than ever before.
+  /// Makes each number a set of its own. Allocates when there are more numbers than ever before.
   void reset(std::size_t count) {
     parent_.resize(count);
     std::iota(parent_.begin(), parent_.end(), 0u);

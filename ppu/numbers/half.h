@@ -6,8 +6,8 @@
 
 namespace softcell::ppu {
 
-/// The nearest binary16, ties to even. From 65520 on infinity, up to 2^-25 zero; a NaN becomes a quiet NaN
-/// with the top nine bits of its payload.
+/// The nearest binary16, ties to even. Magnitudes from 65520 on become infinity, up to 2^-25 zero; a NaN becomes a quiet NaN with the top
+/// nine bits of its payload.
 constexpr std::uint16_t half_from_float(float value) {
   const auto bits = std::bit_cast<std::uint32_t>(value);
   const std::uint32_t sign = (bits >> 16) & 0x8000u;

@@ -6,7 +6,7 @@
 
 namespace softcell::ppu {
 
-/// FNV-1a over the numbers, for tables.
+/// FNV-1a over the numbers, as a hash for tables.
 struct HashOfNumbers {
   template <std::size_t kCount>
   std::size_t operator()(const std::array<std::uint32_t, kCount>& numbers) const {

@@ -5,8 +5,8 @@
 
 namespace softcell::ppu {
 
-/// Which share of a segment, 0..1, lies between its begin and its place that is nearest to `point`.
-/// @param along  from the segment's begin to its end; may be nothing
+/// The fraction of a segment, 0..1, from its begin to its nearest place to `point`.
+/// @param along  from the segment's begin to its end; may be 0
 inline float share_of_segment(const Eigen::Vector2f& from, const Eigen::Vector2f& along,
                               const Eigen::Vector2f& point) {
   const float square = along.squaredNorm();

@@ -1,5 +1,5 @@
 #pragma once
-// Equations whose matrix is symmetric, positive definite, and zero far from its diagonal.
+// Solves equations whose matrix is symmetric, positive definite, and zero far from its diagonal.
 
 #include <algorithm>
 #include <cmath>
@@ -12,9 +12,9 @@ namespace softcell::ppu {
 /// The Cholesky factor of such a matrix, in doubles. Used by one thread. Allocates when a matrix is larger than ever before.
 class SkylineFactor {
  public:
-  /// @param first    first(i): up to that column row i is zero
-  /// @param element  element(i, j), of j from first(i) to i
-  /// @param least    least(i): a pivot that comes out smaller is this, as of a row that says what others have said
+  /// @param first    first(i): row i is zero before this column
+  /// @param element  element(i, j), for j from first(i) to i
+  /// @param least    least(i): replaces a smaller pivot, which comes from a row that depends on earlier ones
   template <class First, class Element, class Least>
   void factor(std::size_t n, const First& first, const Element& element, const Least& least) {
     n_ = n;
@@ -32,7 +32,7 @@ class SkylineFactor {
     }
   }
 
-  /// Makes right sides solutions. @pre as many as rows
+  /// Replaces the right sides by the solutions. @pre as many values as rows
   void solve(std::span<double> values) const {
     for (std::size_t i = 0; i < n_; ++i) {
       const double* const row = &lower_[i * n_];

@@ -1,5 +1,5 @@
 #pragma once
-// What turns, in two dimensions and three: cross products, and moments of inertia in kg m^2.
+// Rotation in two dimensions and three: cross products, and moments of inertia in kg m^2.
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -28,7 +28,7 @@ inline Eigen::Matrix3d inertia_of(const Eigen::Matrix3d& second_moment) {
 inline Eigen::Matrix3d inverse(const Eigen::Matrix3d& inertia) { return inertia.inverse(); }
 inline Eigen::Vector3f to_float(const Eigen::Vector3d& axial) { return axial.cast<float>(); }
 
-/// The turn (rad/s) with that spin; none for what lies on a point or, in three dimensions, on a line.
+/// The angular velocity (rad/s) with this angular momentum; 0 for particles on one point or, in three dimensions, on one line.
 inline double turn_of(double inertia, double spin) { return inertia > 0 ? spin / inertia : 0; }
 inline Eigen::Vector3d turn_of(const Eigen::Matrix3d& inertia, const Eigen::Vector3d& spin) {
   constexpr double kFlat = 1e-9;

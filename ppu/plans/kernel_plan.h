@@ -1,5 +1,5 @@
 #pragma once
-// What the plans of the kernels match and match_2d have in common.
+// What the plans of the kernels match and match_2d share.
 
 #include <cstddef>
 #include <cstdint>
@@ -15,10 +15,10 @@
 
 namespace softcell::ppu {
 
-/// A line of main storage: plans occupy whole ones, which a get moves fastest.  [CBEA, MFC commands] documented
+/// A line of main storage. Plans occupy whole lines, which a get moves fastest.  [CBEA, MFC commands] documented
 inline constexpr std::size_t kPlanLineBytes = dma::kLineBytes;
 
-/// Plan and state of one body need more local store than the kernel has; the sentence states both.
+/// The plan and state of one body need more local store than the kernel has; the message states both sizes.
 class BodyTooLarge : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -41,10 +41,10 @@ class KernelPlan {
     return std::as_bytes(std::span(lines_));
   }
 
-  /// The widths of the numbers in bytes(), which it covers.
+  /// The widths of the numbers in bytes(), all of them.
   std::span<const dma::ElementRun> record() const { return record_; }
 
-  /// Particle -> the place of its region among the plan's: group number / 4, lane number % 4.
+  /// Particle -> the place of its region in the plan: group number / 4, lane number % 4.
   std::span<const std::uint32_t> region_of() const { return region_of_; }
 
   /// Additions and subtractions of slots that one sum up takes.

@@ -49,7 +49,7 @@ int rows_that_fit(const Lattice<3>& lattice, int half_width, std::uint32_t arena
   const auto w = static_cast<std::uint64_t>(half_width);
   const auto bytes = [&](std::uint64_t rows) {
     const std::uint64_t in = (rows + 2 * w) * height, out = rows * height;  // particles of a slice
-    // A chain's step is 4 bytes of list, a run's 6. Two slices of regions and 2 w + 2 of plates are alive.
+    // A step of a chain takes 4 bytes of list, one of a run 6. Two slices of regions and 2 w + 2 of plates are alive.
     const spu::TileLimits up{.slices = 64,
                              .input_groups = static_cast<std::uint32_t>(in / 4 + 1),
                              .output_groups = static_cast<std::uint32_t>(out / 4 + 1),

@@ -1,6 +1,6 @@
 #pragma once
-// The order in which the kernels make the sums of a lattice, whether a body is stepped whole or in tiles: the
-// same chains, hence the same bits.
+// The order in which the kernels make the sums of a lattice. It is the same whether a body is stepped as a whole or in tiles: the same
+// chains, hence the same bits.
 
 #include <cstdint>
 #include <vector>
@@ -21,19 +21,19 @@ struct LatticeSums {
 
   SumLevel bars_of_particles, bars_of_regions, plates, regions;
   std::vector<std::uint32_t> region_slot;     ///< of SumPlan's regions
-  std::vector<std::uint32_t> region_at_slot;  ///< the other way; [0] means nothing
+  std::vector<std::uint32_t> region_at_slot;  ///< the inverse; [0] is unused
   std::vector<std::uint32_t> home;            ///< of SumPlan's regions: the lowest particle that has it
 };
 
 /// Sums start anew at multiples of this along x and z; along y at multiples of sum_restart_of_rows().
 inline constexpr int kSumRestart = KernelPlan<spu::MatchPlanHeader>::kRestart;
 
-/// Rows (y) of a lattice that a tile may have, judged by the lattice's height (z): as many as the local store
-/// of the kernel match_tiles holds, at least one.
-/// @param arena_bytes  as TilePlan's
+/// Rows (y) of a lattice that a tile may have, estimated from the lattice's height (z): as many as fit the local store of the kernel
+/// match_tiles, at least one.
+/// @param arena_bytes  as for TilePlan
 int rows_that_fit(const Lattice<3>& lattice, int half_width, std::uint32_t arena_bytes);
 
-/// The same for the kernel that is not checked, at most kSumRestart, so that sums do not depend on the flavour.
+/// The same for the unchecked kernel, at most kSumRestart, so that sums do not depend on whether a kernel is checked.
 int sum_restart_of_rows(const Lattice<3>& lattice, int half_width);
 
 }  // namespace softcell::ppu

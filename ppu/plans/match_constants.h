@@ -1,5 +1,5 @@
 #pragma once
-// Constants of a whole body in the plans of both kernels, match and match_tiles.
+// Constants of a whole body in the plans of the kernels match and match_tiles.
 
 #include <array>
 #include <cstdint>
@@ -12,10 +12,10 @@ namespace softcell::ppu {
 
 spu::MatchHold hold_of(const Lattice<3>& lattice, const MatchingPlan<float, 3>& matching);
 
-/// Particles all over the body.
+/// Chooses particles spread over the whole body.
 std::array<std::uint32_t, spu::kMatchSamples> samples_of(const MatchingPlan<float, 3>& matching);
 
-/// The rest centre of one of four regions.
+/// Sets the rest centre of one of four regions.
 void set_centre(spu::MatchRegions& group, std::uint32_t lane, const MatchingPlan<float, 3>::Region& region);
 
 /// m~ (x0 y0 z0 1) of a particle.

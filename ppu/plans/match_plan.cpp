@@ -58,7 +58,7 @@ MatchPlan::MatchPlan(const Lattice<3>& lattice, const MatchingPlan<float, 3>& ma
                     region_groups = (sums.regions() + 3) / 4;
   const std::size_t slots = 1 + std::max({4 * particle_groups, order.bars_of_particles.size(),
                                           order.plates.size(), 4 * region_groups});
-  // Before lists are written, whose offsets would not fit: what the buffers need at least.
+  // Checked before lists are written, as their offsets would not fit: the least that the buffers need.
   static_assert(2 * spu::kMatchSlotBytes * kFormat.max_slot() > spu::kMatchArenaBytes);
   check_fits("match", matching.particles(), std::uint64_t{slots} * 2 * spu::kMatchSlotBytes, arena_bytes);
 

@@ -53,7 +53,7 @@ MatchPlan2d::MatchPlan2d(const Lattice<2>& lattice, const MatchingPlan<float, 2>
             lattice.particles.size(), matching.particles());
   const SumPlan& sums = matching.sums();
   const Stations stations(as_one_plate(lattice.particles), sums);
-  // A region is its one plate.
+  // A region has one plate.
   const auto plate_of = [&](std::uint32_t region) { return sums.plates_of_region()[region][0]; };
   std::vector<Station> region_stations;
   for (std::uint32_t r = 0; r < sums.regions(); ++r) region_stations.push_back(stations.plates[plate_of(r)]);
@@ -63,7 +63,7 @@ MatchPlan2d::MatchPlan2d(const Lattice<2>& lattice, const MatchingPlan<float, 2>
   const std::size_t particle_groups = (matching.particles() + 3) / 4,
                     region_groups = (sums.regions() + 3) / 4;
   const std::size_t slots = 1 + std::max({4 * particle_groups, bars.item.size(), 4 * region_groups});
-  // Before lists are written, whose offsets would not fit: what the buffers need at least.
+  // Checked before lists are written, as their offsets would not fit: the least that the buffers need.
   static_assert(2 * spu::kMatch2dSlotBytes * kFormat2d.max_slot() > spu::kMatch2dArenaBytes);
   check_fits("match_2d", matching.particles(), std::uint64_t{slots} * 2 * spu::kMatch2dSlotBytes,
              spu::kMatch2dArenaBytes);

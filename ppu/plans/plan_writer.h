@@ -13,13 +13,13 @@
 
 namespace softcell::ppu {
 
-/// Room for a header, then parts one behind the other, each on a multiple of 16 bytes.
+/// Makes room for a header, then appends parts, each at a multiple of 16 bytes.
 class PlanWriter {
  public:
-  /// The header's members are words.
+  /// The header must consist of words.
   explicit PlanWriter(std::size_t header_bytes) : bytes_(header_bytes) { extend_record(sizeof(float)); }
 
-  /// Items are halfwords, or structures of words.
+  /// Items must be halfwords, or structures of words.
   /// @return the part's offset
   template <typename T>
   std::uint32_t append(const std::vector<T>& items) {
@@ -56,7 +56,7 @@ class PlanWriter {
 
  private:
   void align() { bytes_.resize((bytes_.size() + 15) / 16 * 16); }
-  /// What is new since the last call.
+  /// Records what was appended since the last call.
   void extend_record(std::uint32_t element_bytes) {
     const auto bytes = static_cast<std::uint32_t>(bytes_.size() - known_);
     if (bytes != 0) record_.push_back({bytes, element_bytes});
@@ -68,7 +68,7 @@ class PlanWriter {
   std::size_t known_ = 0;  ///< bytes that record_ covers
 };
 
-/// The power of two at or below the spacing: what a body's origin is a multiple of.
+/// The power of two at or below the spacing: a body's origin is a multiple of it.
 inline float origin_grid(float spacing) {
   SC_ASSERT(spacing > 0 && std::isfinite(spacing), "a grid of cells of {} m", spacing);
   int exponent = 0;
@@ -84,7 +84,7 @@ float inverse_body_mass(const Particles& particles) {
   return static_cast<float>(1 / mass);
 }
 
-/// @throws BodyTooLarge  the body needs more local store than `kernel` has for it.
+/// @throws BodyTooLarge  the body needs more local store than `kernel` has.
 inline void check_fits(const char* kernel, std::size_t particles, std::uint64_t needed,
                        std::uint32_t there_are) {
   if (needed <= there_are) return;

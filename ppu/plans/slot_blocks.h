@@ -9,7 +9,7 @@
 
 namespace softcell::ppu {
 
-/// Allocates first fit. Calls come in the order of time.
+/// Allocates first fit. Calls must come in the order of time.
 class SlotBlocks {
  public:
   /// Slot 0 is never allocated: it is always zero. A block may be empty.
@@ -30,7 +30,7 @@ class SlotBlocks {
     std::erase_if(blocks_, [&](const Block& block) { return block.last_use < time; });
   }
 
-  std::uint32_t most() const { return most_; }  ///< slots that were ever needed, slot 0 included
+  std::uint32_t most() const { return most_; }  ///< the most slots that were ever needed, slot 0 included
 
  private:
   struct Block {

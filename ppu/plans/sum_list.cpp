@@ -9,7 +9,7 @@ namespace softcell::ppu {
 
 namespace {
 
-/// Rounds down, below zero too.
+/// Rounds down, also below zero.
 int block_of(int place, int restart) { return (place - (place % restart + restart) % restart) / restart; }
 
 SumLevel::Rule rule_of(const Sum& before, const Sum& after, int restart) {
@@ -52,8 +52,8 @@ void SumListWriter::go_on(std::uint16_t before, std::uint16_t joins, std::uint16
   list_.additions += 2;
 }
 
-/// The longest beginning in which nothing leaves, the longest end in which nothing joins; what lies between
-/// has both, or a slot that adds nothing.
+/// Splits a chain into its longest beginning in which nothing leaves, its longest end in which nothing joins, and the rest, which has both,
+/// or a slot that adds nothing.
 void SumListWriter::end_chain() {
   if (terms_.empty()) return;
   const auto grown = std::ranges::find_if(steps_, [](const Step& step) { return step.leaves != 0; });

@@ -20,7 +20,7 @@ struct Sum {
   std::vector<std::uint32_t> terms;  ///< slots, ascending; one may come twice
 };
 
-/// Sums in the order in which they are made, slots 1, 2, 3, ..., and how each is made.
+/// Sums in the order in which they are made, slots 1, 2, 3, ..., with the rule for each.
 struct SumLevel {
   struct Rule {
     bool follows = false;                 ///< made from the sum before it: that plus `joins` minus `leaves`
@@ -30,15 +30,15 @@ struct SumLevel {
   std::vector<Rule> rules;
 
   std::size_t size() const { return rules.size(); }
-  /// One more sum, always zero.
+  /// Appends a sum that is always zero.
   void push_nothing() {
     terms.push(std::array<std::uint32_t, 1>{0});
     rules.emplace_back();
   }
 };
 
-/// A sum follows the one before it where both differ by at most one term that joins and one that leaves,
-/// unless a place that is a multiple of `restart` lies between.
+/// A sum follows the one before it if the two differ by at most one term that joins and one that leaves, unless a place that is a multiple
+/// of `restart` lies between.
 SumLevel sum_level(const std::vector<Sum>& sums, int restart);
 
 struct SumList {
@@ -46,24 +46,24 @@ struct SumList {
   std::size_t additions = 0;  ///< and subtractions
 };
 
-/// Writes a list sum by sum. Slots are offsets here; 0 is the slot that adds nothing.
+/// Writes a list sum by sum. Slots are given as offsets; 0 is the slot that adds nothing.
 class SumListWriter {
  public:
-  /// A chain's first sum: of `terms`, none for nothing.
+  /// Begins a chain with the sum of `terms`; empty: the sum is zero.
   void begin(std::span<const std::uint16_t> terms);
-  /// The sum after the last one, in its chain.
+  /// The next sum in the chain of the last one.
   /// @pre  follows_chain()
   void follow(std::uint16_t joins, std::uint16_t leaves) {
     SC_ASSERT(follows_chain(), "a sum that joins {} and leaves {} follows none", joins, leaves);
     steps_.push_back({joins, leaves});
   }
-  /// The sum after one that a chain of another list has made.
+  /// A sum that follows one from a chain of another list.
   void go_on(std::uint16_t before, std::uint16_t joins, std::uint16_t leaves);
 
-  /// Whether the last sum was one of a chain.
+  /// Whether the last sum belongs to a chain.
   bool follows_chain() const { return !terms_.empty(); }
 
-  /// The list, ended. @pre nothing more is written
+  /// Ends the list and returns it. @pre nothing is written afterwards
   SumList finish();
 
  private:
@@ -74,9 +74,9 @@ class SumListWriter {
   void push(std::size_t halfword) { list_.halfwords.push_back(static_cast<std::uint16_t>(halfword)); }
 
   SumList list_;
-  std::vector<std::uint16_t> terms_;  ///< of the chain under way
+  std::vector<std::uint16_t> terms_;  ///< of the current chain
   std::vector<Step> steps_;
-  std::size_t run_at_ = 0;  ///< where the length of the run under way stands; meaningless unless in_run_
+  std::size_t run_at_ = 0;  ///< index of the current run's length; meaningless unless in_run_
   bool in_run_ = false;
 };
 
@@ -88,7 +88,7 @@ struct SumListFormat {
   constexpr std::uint32_t max_slot() const { return 0xFFFF / (slot_bytes / spu::kSumOffsetUnit); }
 };
 
-/// A slot as sum lists have it.
+/// The offset of a slot in sum lists.
 constexpr std::uint16_t sum_list_offset(std::uint32_t slot, std::uint32_t slot_bytes) {
   return static_cast<std::uint16_t>(slot * (slot_bytes / spu::kSumOffsetUnit));
 }
@@ -97,7 +97,7 @@ constexpr std::uint16_t sum_list_offset(std::uint32_t slot, std::uint32_t slot_b
 /// @pre  slots are at most SumListFormat::max_slot().
 SumList write_sum_list(const SumLevel& level, std::uint32_t slot_bytes);
 
-/// The same from the sums.
+/// The same from sums.
 inline SumList write_sum_list(const std::vector<Sum>& sums, const SumListFormat& format) {
   return write_sum_list(sum_level(sums, format.restart), format.slot_bytes);
 }

@@ -1,6 +1,6 @@
 #pragma once
-// The order in which a plan makes its sums: neighbours along a row of the lattice one after the other, so
-// that a sum list can make each from the one before it.
+// The order in which a plan makes its sums: neighbours along a row of the lattice come one after the other, so that a sum list can make
+// each from the one before it.
 
 #include <Eigen/Core>
 #include <array>
@@ -15,7 +15,7 @@
 
 namespace softcell::ppu {
 
-/// Where a bar, plate or region stands in that order.
+/// The position of a bar, plate or region in that order.
 struct Station {
   std::array<int, 3> row{};
   int place = 0;
@@ -29,11 +29,11 @@ struct Station {
 struct Stations {
   std::vector<Station> bars, plates, regions;
 
-  /// @param particles  grid indices, as `sums` was made from them.
+  /// @param particles  grid indices from which `sums` was made.
   Stations(std::span<const Eigen::Vector3i> particles, const SumPlan& sums);
 };
 
-/// An order of things, and the slot that each gets by it: 1, 2, 3, ...
+/// An order of items, and the slot that it gives each: 1, 2, 3, ...
 struct Order {
   std::vector<std::uint32_t> item;  ///< by rank
   std::vector<std::uint32_t> slot;  ///< by item
@@ -41,15 +41,15 @@ struct Order {
   explicit Order(const std::vector<Station>& stations);
 };
 
-/// All items in their order, and after them `padding` sums of nothing.
-/// @param terms    of an item: what is added up
-/// @param slot_of  where a term is found
+/// All items in their order, followed by `padding` sums of nothing.
+/// @param terms    of an item: its terms
+/// @param slot_of  the slot of a term
 std::vector<Sum> ordered_sums(const std::vector<Station>& stations, const Order& order,
                               const std::function<std::span<const std::uint32_t>(std::uint32_t)>& terms,
                               const std::function<std::uint32_t(std::uint32_t)>& slot_of,
                               std::size_t padding = 0);
 
-/// The sum list that makes them.
+/// The sum list that makes these sums.
 inline SumList ordered_sum_list(const std::vector<Station>& stations, const Order& order,
                                 const std::function<std::span<const std::uint32_t>(std::uint32_t)>& terms,
                                 const std::function<std::uint32_t(std::uint32_t)>& slot_of,

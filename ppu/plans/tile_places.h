@@ -19,8 +19,8 @@ struct TileGrid {
   std::pair<int, int> tile_of(const Eigen::Vector3i& index) const;
 };
 
-/// Places of things (particles or regions) at lattice sites, ordered by plane, tile row and number. The things of one
-/// tile in one plane are one stretch, padded to groups of four.
+/// Places of things (particles or regions) at lattice sites, ordered by plane, tile row and number. The things of one tile in one plane
+/// form one stretch, padded to groups of four.
 class TilePlaces {
  public:
   struct Stretch {
@@ -36,13 +36,13 @@ class TilePlaces {
     return place_of_[thing];
   }
   std::span<const std::uint32_t> all_places() const { return place_of_; }
-  /// What is at a place, or kPadding.
+  /// The thing at a place, or kPadding.
   std::uint32_t at(std::uint32_t place) const {
     SC_ASSERT(place < thing_at_.size(), "place {} of {}", place, thing_at_.size());
     return thing_at_[place];
   }
   std::uint32_t size() const { return static_cast<std::uint32_t>(thing_at_.size()); }
-  /// Of plane x and a tile row; empty where there is nothing.
+  /// The stretch of plane x and a tile row; empty if there is nothing.
   Stretch stretch(int x, int tile_row) const;
 
  private:

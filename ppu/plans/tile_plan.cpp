@@ -19,12 +19,12 @@ namespace {
 
 using Direction = TileScheduler::Direction;
 
-constexpr int kTilesWanted = 24;  // enough for six SPEs to end a pass at nearly the same time
-constexpr int kMostPlanes = 64;   // slices of a tile are kept in the local store
+constexpr int kTilesWanted = 24;  // enough that six SPEs end a pass at nearly the same time
+constexpr int kMostPlanes = 64;   // the local store keeps the slices of a tile
 
 int round_up(int count, int step) { return (count + step - 1) / step * step; }
 
-/// Tiles begin where sums start anew, so that they make no sums twice for a chain's sake.
+/// Tiles begin where sums start anew, so that no sum is made twice only to begin a chain.
 int most_rows(const Lattice<3>& lattice, int half_width, std::uint32_t arena_bytes) {
   const int fit = rows_that_fit(lattice, half_width, arena_bytes);
   return fit < kSumRestart ? fit : fit / kSumRestart * kSumRestart;
@@ -52,7 +52,7 @@ std::vector<Eigen::Vector3i> homes(const Lattice<3>& lattice, const LatticeSums&
   return sites;
 }
 
-/// A body in tiles of one size.
+/// A body, cut into tiles of one size.
 struct Tiling {
   TilePlaces particles, regions;
   std::vector<TilePlan::Tile> tiles{};
@@ -63,20 +63,20 @@ struct Tiling {
   std::uint32_t bytes() const { return std::max(spu::tile_up_bytes(up), spu::tile_down_bytes(down)); }
 };
 
-/// Ends with the first tile that does not fit.
+/// Stops at the first tile that does not fit.
 Tiling cut(const Lattice<3>& lattice, const MatchingPlan<float, 3>& matching, const LatticeSums& order,
            const TileGrid& grid, std::uint32_t arena_bytes) {
   Tiling cut{TilePlaces(grid, lattice.particles), TilePlaces(grid, homes(lattice, order))};
   TileScheduler scheduler(lattice, matching.sums(), matching.half_width(), order, grid, cut.particles,
                           cut.regions);
-  std::map<std::pair<int, int>, std::size_t> particles_of;  // each tile
+  std::map<std::pair<int, int>, std::size_t> particles_of;  // for each tile
   for (const Eigen::Vector3i& index : lattice.particles) ++particles_of[grid.tile_of(index)];
   const auto fits = [&] {
     cut.up = scheduler.limits(Direction::kUp);
     cut.down = scheduler.limits(Direction::kDown);
     return spu::tile_fits(cut.up, cut.down, arena_bytes);
   };
-  // Where one does not fit it is most likely the fullest.
+  // If any tile does not fit, it is most likely the fullest.
   const auto fullest = std::ranges::max_element(
       particles_of, {},
       [](const std::pair<const std::pair<int, int>, std::size_t>& tile) { return tile.second; });
@@ -96,7 +96,8 @@ Tiling cut(const Lattice<3>& lattice, const MatchingPlan<float, 3>& matching, co
   return cut;
 }
 
-/// Rows are judged by the height of the lattice alone. Where it is not a block, regions have more sums of their own, and lists are longer.
+/// Estimates rows from the height of the lattice alone. In a lattice that is not a block, more sums belong to single regions, and lists are
+/// longer.
 Tiling cut_to_fit(const Lattice<3>& lattice, const MatchingPlan<float, 3>& matching, const LatticeSums& order,
                   TileShape shape, std::uint32_t arena_bytes) {
   int rows = shape.rows > 0 ? shape.rows : most_rows(lattice, matching.half_width(), arena_bytes);

@@ -1,5 +1,5 @@
 #pragma once
-// The plan of the kernel `match_tiles`: a body that no local store holds, cut into tiles.
+// The plan of the kernel `match_tiles`: a body too large for a local store, cut into tiles.
 
 #include <cstddef>
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace softcell::ppu {
 
-/// Size of a tile in particles; 0: the plan chooses.
+/// The size of a tile in particles; 0: the plan chooses.
 struct TileShape {
   int planes = 0;  ///< along x
   int rows = 0;    ///< along y; along z a tile is as high as the body
@@ -21,12 +21,12 @@ struct TileShape {
 
 /// The work of each tile, slice by slice, with its constants. Immutable, the same bytes on every host.
 ///
-/// A tile computes every sum that its regions and particles need, and the sums that these need, by MatchPlan's rules
-/// for the whole body; geometry alone decides nothing. So any lattice with any half-width can be cut anywhere,
-/// and the shape of tiles changes only the cost. The plan also decides which values a slice keeps for later
-/// slices, and until when: it allocates slots of the local store by lifetime, as a compiler allocates registers.
+/// A tile computes every sum that its regions and particles need, and the sums that these need, by MatchPlan's rules for the whole body;
+/// geometry alone decides nothing. So any lattice with any half-width can be cut anywhere, and the shape of tiles affects only the cost.
+/// The plan also decides which values a slice keeps for later slices, and until when: it allocates slots of the local store by lifetime, as
+/// a compiler allocates registers.
 ///
-/// @see match_tiles_job.h for passes and places, docs/notes/performance.md for what was chosen and why
+/// @see match_tiles_job.h for passes and places, docs/notes/performance.md for the choices and their reasons
 class TilePlan {
  public:
   struct Tile {
@@ -34,16 +34,16 @@ class TilePlan {
     std::vector<spu::TileSlice> down, damp;  ///< of `scatter`, and the same for `damp`
   };
 
-  /// @param arena_bytes  what the kernel has for a tile: kTileArenaBytes, or of its instrumented flavour
-  ///                     kTileCheckedArenaBytes. The result does not depend on it.
+  /// @param arena_bytes  local store for a tile: kTileArenaBytes, or for the checked kernel kTileCheckedArenaBytes. The result does not
+  ///                     depend on it.
   /// @throws BodyTooLarge           a slice does not fit a local store: the lattice is too high (z).
-  /// @throws std::invalid_argument  a shape below zero.
+  /// @throws std::invalid_argument  a size in `shape` is negative.
   TilePlan(const Lattice<3>& lattice, const MatchingPlan<float, 3>& matching, TileShape shape = {},
            std::uint32_t arena_bytes = spu::kTileArenaBytes);
 
   std::span<const Tile> tiles() const { return tiles_; }
 
-  /// What stays the same from step to step. Its addresses are 0.
+  /// The part that stays the same from step to step. Its addresses are 0.
   const spu::TiledBody& body() const { return body_; }
 
   /// The place of each particle in positions and velocities. Ascending; the places between are padding.
@@ -55,7 +55,7 @@ class TilePlan {
 
   /// The sum lists and offsets to which TileSlice refers; equal ones are stored once.
   std::span<const std::byte> lists() const { return std::as_bytes(std::span(lists_)); }
-  /// The widths of their numbers.
+  /// The widths of the numbers in lists().
   std::span<const dma::ElementRun> record_of_lists() const { return record_of_lists_; }
   std::span<const spu::TileRest> rest() const { return rest_; }
   std::span<const spu::TileWeights> weights() const { return weights_; }

@@ -152,8 +152,7 @@ void TileScheduler::collect(std::pair<int, int> tile) {
       slice_at(time_of(static_cast<int>(kind), slot)).blocks[kind].slots.push_back(slot);
 }
 
-/// Finds the stretches of places that each slice fetches and writes; the blocks of inputs and, upwards, of regions
-/// have their order.
+/// Finds the stretches of places that each slice fetches and writes. Blocks of inputs and, upwards, of regions are in the order of places.
 void TileScheduler::place_outputs(std::pair<int, int> tile) {
   for (std::size_t n = 0; n < slices_.size(); ++n) {
     Slice& slice = slices_[n];
@@ -173,7 +172,7 @@ void TileScheduler::place_outputs(std::pair<int, int> tile) {
       inputs.size = slice.last_place - slice.first_place;
     }
 
-    const int plane = first_time_ + static_cast<int>(n) - half_width_;  // what is complete now
+    const int plane = first_time_ + static_cast<int>(n) - half_width_;  // complete at this time
     Block& regions = slice.blocks[kRegion];
     if (grid_.tile_of({plane, 0, 0}).first == tile.first)
       slice.output = (direction_ == Direction::kUp ? regions_ : particles_).stretch(plane, tile.second);
@@ -183,7 +182,7 @@ void TileScheduler::place_outputs(std::pair<int, int> tile) {
         const bool padding = regions_.at(place) == TilePlaces::kPadding;
         ordered.push_back(padding ? 0 : order_.region_slot[regions_.at(place)]);
       }
-      for (const std::uint32_t slot : regions.slots)  // that others follow, outside of the tile
+      for (const std::uint32_t slot : regions.slots)  // which others follow, outside of the tile
         if (std::ranges::find(ordered, slot) == ordered.end()) ordered.push_back(slot);
       regions.slots = std::move(ordered);
     }
@@ -221,7 +220,7 @@ void TileScheduler::allocate_slots() {
   const auto allocate = [&](Block& block) { block.begin = free.allocate(block.size, block.last_use); };
   for (std::size_t n = 0; n < slices_.size(); ++n) {
     free.free_before(first_time_ + static_cast<int>(n));
-    // Motions are fetched to their slots while the slice before is worked on.
+    // Motions are fetched into their slots while the previous slice is being computed.
     const bool early = direction_ == Direction::kDown;
     if (!early || n == 0) allocate(slices_[n].blocks[kInput]);
     if (early && n + 1 < slices_.size()) allocate(slices_[n + 1].blocks[kInput]);

@@ -1,5 +1,5 @@
 #pragma once
-// Cuts the work of a tile into slices: what each fetches, sums up, keeps and writes.
+// Cuts the work of a tile into slices: what each slice fetches, sums up, keeps and writes.
 
 #include <array>
 #include <cstdint>
@@ -21,12 +21,12 @@ namespace softcell::ppu {
 /// The lists of all slices; equal lists are stored once.
 class TileLists {
  public:
-  /// @param words     at first `offsets` of them, a multiple of 4, then pairs of halfwords as they lie in memory
+  /// @param words     first `offsets` offsets, a multiple of 4, then pairs of halfwords as they lie in memory
   /// @return the list's offset in bytes, a multiple of 16
   std::uint32_t add(std::vector<std::uint32_t> words, std::uint32_t offsets);
   /// Moves all lists out.
   std::vector<std::uint32_t> release() { return std::move(words_); }
-  /// The widths of their numbers.
+  /// The widths of the numbers in the lists.
   std::span<const dma::ElementRun> record() const { return record_; }
 
  private:
@@ -49,7 +49,7 @@ class TileScheduler {
                 const TileGrid& grid, const TilePlaces& particles, const TilePlaces& regions);
 
   std::vector<spu::TileSlice> slices(std::pair<int, int> tile, Direction direction);
-  /// The result of the last slices() again, for slots of two rows.
+  /// Writes the result of the last slices() again, for slots of two rows.
   std::vector<spu::TileSlice> slices_for_twists() { return write_slices(spu::kTwistSlotBytes); }
 
   TileLists& lists() { return lists_; }
@@ -98,7 +98,7 @@ class TileScheduler {
   std::map<std::pair<int, int>, Slots> particles_of_tile_, regions_of_tile_;                      // by number
   std::vector<int> plane_of_particle_, plane_of_region_, plane_of_bar_, plane_of_plate_, ready_;  // by slot
 
-  // Of the tile and direction under way.
+  // For the current tile and direction:
   Direction direction_ = Direction::kUp;
   std::uint32_t slot_bytes_ = spu::kMatchSlotBytes;
   std::array<const std::vector<int>*, kKinds> times_{};

@@ -9,9 +9,9 @@ namespace {
 
 // In cells. A wide margin lasts longer, a narrow one has fewer candidates.
 constexpr float kMargin = 0.25f;
-// Candidates that would not last for so many steps are not kept.
+// Candidates that would not last for this many steps are not kept.
 constexpr double kLeastSteps = 2;
-// Of the margin: so much is left for rounding, and for points that count as in a cell a little outside of it.
+// As a share of the margin: kept for rounding, and for points that count as in a cell although they are a little outside of it.
 constexpr double kSpare = 0.05;
 
 }  // namespace
@@ -57,7 +57,7 @@ CandidatePairs::Known& CandidatePairs::of(const Pair& pair, float spacing) {
     known.pair = pair;
     if (free_slots_.empty()) {
       free_slots_.push_back(static_cast<std::uint32_t>(slots_++));
-      // A step in which pairs part allocates nothing.
+      // Reserves room now, so that a step in which pairs part allocates nothing.
       if (free_slots_.capacity() < slots_) free_slots_.reserve(2 * slots_);
     }
     known.slot = free_slots_.back();

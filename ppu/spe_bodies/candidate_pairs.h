@@ -1,9 +1,9 @@
 #pragma once
-// For how long what may touch of two bodies (spu::FindCandidate) stays the same: until something of the one has moved
-// against something of the other by more than the margin with which candidates were looked for.
+// Keeps the candidates for contacts of two bodies (spu::FindCandidate) from step to step. They stay valid until some part of one body has
+// moved against some part of the other by more than the margin with which the candidates were found.
 //
-// Each step adds to a body's way: the particle in the middle of all displacements moves along a vector, and all others move
-// like it but for a length. Vectors are added as vectors, so bodies that fall side by side do not move against each other.
+// Each step adds to a body's way a vector and a length: the vector is the middle of all particles' displacements, and no displacement
+// differs from it by more than the length. Vectors are added as vectors, so bodies that fall side by side do not move against each other.
 
 #include <Eigen/Core>
 #include <cstdint>
@@ -20,41 +20,41 @@ class CandidatePairs {
  public:
   using Pair = std::pair<std::uint32_t, std::uint32_t>;
 
-  /// What is known of two bodies.
+  /// What is known of a pair of bodies.
   struct Known {
     Pair pair;
-    std::uint32_t slot = 0;  ///< of the pair's candidates, of no other pair
-    float margin = 0;  ///< metres: with which they are to be looked for, or have been; 0: none is worth it
-    std::uint32_t count = spu::kFindUnknown;  ///< of candidates, if they are known
+    std::uint32_t slot = 0;  ///< place of the pair's candidates; no other pair has it
+    float margin = 0;        ///< metres: to find candidates with, or found with; 0: not worth keeping them
+    std::uint32_t count = spu::kFindUnknown;  ///< of candidates, if known
     Eigen::Vector3d apart{
-        0, 0, 0};       ///< by how much the second body has moved against the first, when they were found
-    double spread = 0;  ///< and the lengths of both
-    bool overflows = false;  ///< the kernel had no room for all that it found, once
+        0, 0, 0};            ///< by how far the second body has moved against the first, when they were found
+    double spread = 0;       ///< the sum of both lengths at that time
+    bool overflows = false;  ///< the kernel once had no room for all that it found
   };
 
-  /// There are other bodies than before: nothing is known.
+  /// Forgets everything: the bodies are others than before.
   void clear(std::size_t bodies);
 
-  /// A body's particles have moved by what lies between `low` and `high`, metres, since the step before.
+  /// The displacements of a body's particles since the step before lie between `low` and `high`, metres.
   void add_way(std::uint32_t body, const Eigen::Vector3f& low, const Eigen::Vector3f& high);
 
-  /// A step begins after all ways are known: what is not asked for until end_step() is forgotten.
+  /// Begins a step, after all ways have been added. Pairs not asked for until end_step() are forgotten.
   void begin_step();
-  /// What is known of a pair, or that nothing is. @pre pairs come in ascending order
-  /// @param spacing  metres, of the finer one's cells
-  /// @return good until the next call of anything; its count may be set until then, or by known() later
+  /// What is known of a pair, or a new entry. @pre pairs come in ascending order
+  /// @param spacing  metres, of the finer body's cells
+  /// @return valid until the next call of any function; its count may be set until then, or later through known()
   Known& of(const Pair& pair, float spacing);
   void end_step();
 
   /// The pairs of the last step, in the order in which they were asked for.
   std::span<Known> known() { return known_; }
-  std::size_t slots() const { return slots_; }  ///< slots in use are below
+  std::size_t slots() const { return slots_; }  ///< all slots in use are below this
 
  private:
   struct Way {
     Eigen::Vector3d vector{0, 0, 0};
     double length = 0;
-    // Of the last step.
+    // in the last step
     Eigen::Vector3d last{0, 0, 0};
     double last_length = 0;
   };

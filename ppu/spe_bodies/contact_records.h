@@ -1,5 +1,5 @@
 #pragma once
-// The widths of the numbers in the contracts of contact_find, contact_solve and attach, and buffers that know them.
+// The widths of the numbers in the job contracts of contact_find, contact_solve and attach, and buffers with such numbers.
 
 #include <cstddef>
 
@@ -11,7 +11,7 @@
 
 namespace softcell::ppu {
 
-/// Of a structure of the contracts.
+/// The widths in a structure of the contracts.
 template <typename T>
 struct ContactRecord;
 template <>
@@ -96,7 +96,7 @@ struct ContactRecord<spu::AttachJob> {
   static constexpr dma::ElementRun kRuns[] = {{48, 8}, {80, 4}};
 };
 
-/// A buffer that SPEs of either byte order read rightly.
+/// A buffer that SPEs of either byte order read correctly.
 template <typename T>
 dma::Buffer<T> contact_buffer(dma::AddressSpace& memory, const char* name, std::size_t count,
                               const dma::BufferOptions& options = {}) {
@@ -104,14 +104,14 @@ dma::Buffer<T> contact_buffer(dma::AddressSpace& memory, const char* name, std::
   return dma::Buffer<T>(memory, name, count, of_record(ContactRecord<T>::kRuns, options));
 }
 
-/// One of four boxes.
+/// Sets one of four boxes.
 template <typename Vector>
 void set_box(spu::FindBoxes& four, std::size_t lane, const Vector& low, const Vector& high) {
   four.low_x[lane] = low[0], four.low_y[lane] = low[1], four.low_z[lane] = low[2];
   four.high_x[lane] = high[0], four.high_y[lane] = high[1], four.high_z[lane] = high[2];
 }
 
-/// Room for at least so many elements; what is in them is lost.
+/// Makes room for at least `count` elements; the buffer's content is lost.
 template <typename T>
 void make_room(dma::AddressSpace& memory, const char* name, dma::Buffer<T>& buffer, std::size_t count) {
   if (count <= buffer.size()) return;

@@ -5,8 +5,8 @@
 namespace softcell::ppu {
 namespace {
 
-/// A linear function of s = xi - 1/2 below the field: with the slopes that fit it best, as high as may be.
-/// Between its nodes the field is trilinear, so the difference is least at a node.
+/// Fits a linear function of s = xi - 1/2 below the field: with the slopes of the best fit, as high as possible. The field is trilinear
+/// between its nodes, so the difference is least at a node.
 void fit_below(spu::FindCell& cell) {
   const auto place = [](int node, int axis) {
     const int step = axis == 0 ? node % 3 : axis == 1 ? node / 3 % 3 : node / 9;
@@ -46,7 +46,7 @@ FindModel::FindModel(const ContactModel& model) {
       if (lane == 0) {
         spu::FindGroup& fresh = groups.emplace_back();
         std::fill(std::begin(fresh.allowance), std::end(fresh.allowance), spu::kFindNoPoint);
-        // Lanes without a point are where the first one is: the region around all of them is no larger.
+        // Lanes without a point repeat the first point: so they do not enlarge the region around all of them.
         const Eigen::Vector3f s = model.touch_points[i].xi.array() - 0.5f;
         std::fill(std::begin(fresh.along_x), std::end(fresh.along_x), s.x());
         std::fill(std::begin(fresh.along_y), std::end(fresh.along_y), s.y());

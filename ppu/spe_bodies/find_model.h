@@ -1,5 +1,5 @@
 #pragma once
-// What the kernel contact_find reads of a model.
+// Converts a contact model to what the kernel contact_find reads.
 
 #include <vector>
 

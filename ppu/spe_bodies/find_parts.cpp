@@ -60,7 +60,7 @@ std::size_t points_of(const FindParts::Body& body, std::uint16_t cell) {
   return points;
 }
 
-/// How many of some cells have no more points than a part may have, as each has one contact at most.
+/// How many of these cells, from the first on, have no more points in all than a part may have, as each point makes at most one contact.
 std::size_t first_ones(const FindParts::Body& body, std::span<const std::uint16_t> cells) {
   std::size_t count = 0, points = 0;
   for (; count < cells.size() && count < spu::kFindMaxNear; ++count) {
@@ -268,7 +268,7 @@ void FindParts::describe(std::size_t part, spu::FindBody& a, spu::FindBody& b) c
 void FindParts::restore(std::size_t part, spu::SolveContact& contact) const {
   SC_ASSERT(part < parts_.size(), "a contact of part {} of {}", part, parts_.size());
   const auto restore_side = [&](const Selection& selection, spu::SolveAnchor& anchor, std::uint16_t& cell) {
-    // The slot of zeros is behind all particles.
+    // The slot of zeros follows all particles.
     for (std::uint16_t& particle : anchor.particle)
       particle = particle < selection.particle_count ? particles_[selection.first_particle + particle]
                                                      : static_cast<std::uint16_t>(selection.body.ends.size());

@@ -1,12 +1,13 @@
 #pragma once
-// Pairs of bodies that do not fit into a local store together, or touch at more points than the kernel contact_find has room for.
+// Cuts pairs of bodies into parts if they do not fit into a local store together, or touch at more points than the kernel contact_find has
+// room for.
 //
 //     body a  [ ] [ ] [#] [#] [ ]      cells of a that are near b, some at a time, with their points;
-//     body b      [#] [#] [#] [ ]      and of b those that are near these, without points. Then the other way round.
+//     body b      [#] [#] [#] [ ]      and cells of b that are near these, without points. Then the other way round.
 //
-// Both are written as small bodies of their own, which the kernel takes for whole ones. Each point is in one part only. Ways through the
-// bodies pass through other cells: of a the inner cells of those with points are there, of b, if they fit, all; without boxes, so that they
-// are near nothing.
+// Both parts are written as small bodies, and the kernel takes them for whole ones. Each point is in one part only. The kernel also needs
+// cells through which a way out of the body leads: the part of a has the inner cells of its cells with points, the part of b has all other
+// cells, if they fit. These cells have no boxes, so they are near nothing.
 
 #include <cstdint>
 #include <span>
@@ -22,10 +23,10 @@ namespace softcell::ppu {
 /// Used by one thread. Allocates when there are more parts than ever before.
 class FindParts {
  public:
-  /// `memory` outlives this.
+  /// `memory` must outlive this object.
   explicit FindParts(dma::AddressSpace& memory) : memory_(memory) {}
 
-  /// What a body has in main memory; it stays there until write().
+  /// A body's arrays in main memory; they must stay in place until write().
   struct Body {
     std::span<const spu::FindCell> cells;
     std::span<const spu::FindGroup> groups;
@@ -37,28 +38,28 @@ class FindParts {
   /// Forgets all parts.
   void clear();
 
-  /// Cuts two bodies, and appends parts.
-  /// @param common  metres: the box that the bodies' boxes have in common
+  /// Cuts two bodies into parts and appends these.
+  /// @param common  metres: the intersection of the bodies' boxes
   /// @return  false: even a single cell is near too many others; then nothing is appended
   bool add(const Body& a, const Body& b, const Bounds<3>& common);
 
   std::size_t size() const { return parts_.size(); }
 
-  /// All parts to main memory.
+  /// Writes all parts to main memory.
   /// @throws std::runtime_error  it is full.
   void write();
-  /// Sets where a part's cells, groups and particles are, and how many. @pre write() was called
+  /// Sets where a part's cells, groups and particles lie, and how many there are. @pre write() was called
   void describe(std::size_t part, spu::FindBody& a, spu::FindBody& b) const;
-  /// Gives a contact of a part the numbers that cells and particles have in the whole bodies.
+  /// Replaces the numbers of cells and particles in a contact of a part by those in the whole bodies.
   void restore(std::size_t part, spu::SolveContact& contact) const;
 
  private:
-  /// Some cells of a body, and particles at their corners.
+  /// Some cells of a body, and the particles at their corners.
   struct Selection {
     Body body;
     bool with_points = false;
     std::size_t first_cell = 0, cell_count = 0;          // in cells_
-    std::size_t near_count = 0;                          // of these, the first ones: with boxes
+    std::size_t near_count = 0;                          // the first ones of these cells, which have boxes
     std::size_t first_particle = 0, particle_count = 0;  // in particles_
     std::size_t group_count = 0;
     std::size_t cells_at = 0, groups_at = 0, state_at = 0;  // in main memory
@@ -68,18 +69,18 @@ class FindParts {
   };
 
   bool add_points_of(const Body& mine, const Body& other, bool mine_is_a, const Bounds<3>& common);
-  /// Cells with their points, and their inner cells.
+  /// Selects cells with their points, and their inner cells.
   Selection select_points(const Body& body, std::span<const std::uint16_t> cells);
-  /// Cells without points.
+  /// Selects cells without points.
   Selection select_near(const Body& body, std::span<const std::uint16_t> cells);
-  /// Of one of these, without inner cells and particles.
+  /// The first step of both, without inner cells and particles.
   Selection select_cells(const Body& body, std::span<const std::uint16_t> cells);
-  /// Of those cells in cells_. @pre it is the last selection
+  /// Selects the particles of the selection's cells. @pre it is the last selection
   void select_particles(Selection& selection);
-  /// All other cells of the body, without particles, if that makes no more than so many bytes. @pre it is the last selection
+  /// Adds all other cells of the body, without particles, if the selection then has at most so many bytes. @pre it is the last selection
   void add_rest(Selection& selection, std::size_t most_bytes);
   std::span<const std::uint16_t> cells_of(const Selection& selection) const;
-  /// Sets cell_number_.
+  /// Sets cell_number_ to the numbers of cells in a selection.
   void mark_cells(const Selection& selection);
   void write(const Selection& selection);
   static void set_counts(const Selection& selection, spu::FindBody& body);
@@ -89,10 +90,10 @@ class FindParts {
 
   dma::AddressSpace& memory_;
   std::vector<Part> parts_;
-  std::vector<std::uint16_t> cells_, particles_;  // of all selections: their numbers in the bodies
-  std::vector<std::uint16_t> mine_, near_;        // of add()
-  std::vector<std::uint16_t> number_;             // of each particle of a body in a selection; kNone
-  std::vector<std::uint16_t> cell_number_;        // of each cell; kFindNoCell
+  std::vector<std::uint16_t> cells_, particles_;  // of all selections: numbers in the bodies
+  std::vector<std::uint16_t> mine_, near_;        // used by add()
+  std::vector<std::uint16_t> number_;             // of each particle: its number in a selection, or kNone
+  std::vector<std::uint16_t> cell_number_;        // of each cell likewise, or kFindNoCell
   dma::Buffer<spu::FindCell> part_cells_;
   dma::Buffer<spu::FindGroup> part_groups_;
   dma::Buffer<spu::FindEnd> part_state_;

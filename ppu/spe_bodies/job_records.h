@@ -13,7 +13,7 @@
 
 namespace softcell::ppu {
 
-/// Whether the runs are one T, or several.
+/// Whether the runs add up to the size of one T.
 template <typename T, std::size_t kRuns>
 constexpr bool covers(const dma::ElementRun (&record)[kRuns]) {
   std::size_t bytes = 0;
@@ -54,7 +54,7 @@ static_assert(covers<spu::StrainResult>(kStrainResultRecord));
 inline constexpr dma::ElementRun kStrainJobRecord[] = {{32, 8}, {96, 4}};
 static_assert(covers<spu::StrainJob>(kStrainJobRecord));
 
-/// The options of a buffer of such structures.
+/// The options of a buffer of structures with this record.
 inline dma::BufferOptions of_record(std::span<const dma::ElementRun> record,
                                     dma::BufferOptions options = {}) {
   options.record = record;

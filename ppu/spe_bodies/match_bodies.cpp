@@ -13,7 +13,7 @@
 namespace softcell::ppu {
 namespace {
 
-/// Of a buffer of one kernel's.
+/// The name of a buffer of this kernel.
 template <int kDimension>
 std::string name_of(const char* what) {
   return std::string(MatchKernel<kDimension>::kName) + " " + what;
@@ -103,7 +103,7 @@ void MatchBodies<kDimension>::take_rotations(std::size_t body, const MatchBodies
   if constexpr (kDimension == 3) result(body).cold = other.result(other_body).cold;
 }
 
-/// The kernel match_2d steps bodies that lie one behind the other.
+/// The kernel match_2d steps bodies that lie one after the other in memory.
 template <>
 std::size_t MatchBodies<2>::bodies_of_job(std::span<const std::size_t> bodies,
                                           std::size_t bodies_per_job) const {
@@ -118,7 +118,7 @@ void MatchBodies<2>::write_bodies(spu::MatchJob2d& job, std::span<const std::siz
   job.states_ea = state_ea(bodies[0]).value;
 }
 
-/// The kernel match is told where each is.
+/// The kernel match is told where each body lies.
 template <>
 std::size_t MatchBodies<3>::bodies_of_job(std::span<const std::size_t> bodies,
                                           std::size_t bodies_per_job) const {

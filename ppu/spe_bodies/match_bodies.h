@@ -1,5 +1,5 @@
 #pragma once
-// Bodies of one model in main memory, as the kernel `match` steps them, or `match_2d` in two dimensions.
+// Bodies of one model in main memory, stepped by the kernel `match`, or `match_2d` in two dimensions.
 
 #include <cmath>
 #include <cstddef>
@@ -18,18 +18,18 @@ namespace softcell::ppu {
 struct MatchSettings {
   float pull = 0;     ///< alpha / h, 1/s, not negative
   float damping = 0;  ///< k, 0..1
-  // Of each rotation; 2 and 2 for a fixed effort, 0 and 6 to go by the residual. In two dimensions a rotation
-  // has a closed form.
+  // Iterations of each rotation; 2 and 2 for a fixed effort, 0 and 6 to stop by the residual. In two dimensions a rotation has a closed
+  // form.
   std::uint32_t least_iterations = 0;
   std::uint32_t most_iterations = 6;
 
   bool operator==(const MatchSettings&) const = default;
 };
 
-/// @throws std::invalid_argument  a setting is out of its range; the sentence names it.
+/// @throws std::invalid_argument  a setting is out of its range; the message names it.
 void validate(const MatchSettings& settings);
 
-/// Used by one thread at a time. While jobs are under way nothing may be read or changed.
+/// Used by one thread at a time. While jobs are under way, call nothing that reads or changes a body.
 /// @tparam kDimension  2 or 3
 template <int kDimension>
 class MatchBodies {
@@ -47,7 +47,7 @@ class MatchBodies {
   dma::EffectiveAddress positions_ea(std::size_t body) const {
     return positions_.ea(body * Kernel::positions_stride(header_));
   }
-  /// Of the plan's regions, in groups of four: see KernelPlan::region_of().
+  /// One for each of the plan's regions, in groups of four: see KernelPlan::region_of().
   std::span<const Rotations> rotations(std::size_t body) const;
   /// The largest |axial(R^T A)| of the last step over the sum of |A|'s elements, roughly radians; 0 in two
   /// dimensions, where a rotation has a closed form.
@@ -56,22 +56,23 @@ class MatchBodies {
     return 0;
   }
 
-  /// The constants of another rest shape, for all of these bodies.
-  /// @pre of a body with the same lattice and regions as the plan's; no jobs are under way
+  /// Takes the constants of another rest shape, for all of these bodies.
+  /// @pre they are of a body with the same lattice and regions as the plan's; no jobs are under way
   void set_rest(const MatchingPlan<float, kDimension>& matching);
 
-  /// Forgets a body's rotations: its next step starts cold. That is also how a body begins.
+  /// Forgets a body's rotations: its next step starts cold, as a new body's first step does.
   void reset(std::size_t body);
-  /// Takes the rotations of one of `other`'s bodies. @pre both have the same plan
+  /// Copies the rotations of one of `other`'s bodies. @pre both have the same plan
   void take_rotations(std::size_t body, const MatchBodies& other, std::size_t other_body);
-  /// Those of a body, good as long as this. (A template, as Clang 14 instantiates other members with a class, whatever they require.)
+  /// The rotations of a body, valid as long as this object. (A template, as Clang 14 instantiates other members with a class, whatever they
+  /// require.)
   template <int kOwn = kDimension>
   RegionRotations region_rotations(std::size_t body) requires(kOwn == 3) {
     return {rotations(body), region_of_, result(body).cold};
   }
 
   /// Adds the jobs of one step to a chain: at most one for each body.
-  /// @param settings        of each body to be stepped; a job steps bodies of the same settings
+  /// @param settings        of each body to be stepped; a job steps bodies with the same settings
   /// @param bodies          their numbers, ascending
   /// @param bodies_per_job  a job fetches the plan once and steps at most so many bodies
   /// @throws std::length_error      the chain has no room for them.
@@ -79,24 +80,24 @@ class MatchBodies {
   void add_jobs(JobChain& chain, const JobImage& match, std::span<const MatchSettings> settings,
                 std::span<const std::size_t> bodies, std::size_t bodies_per_job);
 
-  /// The same for bodies of one material.
+  /// The same for bodies with the same settings.
   void add_jobs(JobChain& chain, const JobImage& match, const MatchSettings& settings,
                 std::span<const std::size_t> bodies, std::size_t bodies_per_job) {
     alike_.assign(bodies.size(), settings);
     add_jobs(chain, match, alike_, bodies, bodies_per_job);
   }
 
-  /// After these jobs have ended well. @return the bodies whose positions or velocities are not finite; they
-  /// are as they were before the step.
+  /// Call it after these jobs have ended without failure. @return the bodies whose positions or velocities are not finite; they are as they
+  /// were before the step.
   std::vector<std::size_t> take_results();
 
  private:
   using Header = typename Kernel::Header;
   using Result = typename Kernel::Result;
 
-  /// How many of `bodies`, beginning with the first, one job may step.
+  /// How many of `bodies`, from the first one on, one job may step.
   std::size_t bodies_of_job(std::span<const std::size_t> bodies, std::size_t bodies_per_job) const;
-  /// Writes which bodies a job steps. @param first  where `bodies` stand among those of the step
+  /// Writes which bodies a job steps. @param first  index of the first of `bodies` among those of the step
   void write_bodies(typename Kernel::Job& job, std::span<const std::size_t> bodies, std::size_t first);
 
   dma::EffectiveAddress state_ea(std::size_t body) const {
@@ -105,17 +106,17 @@ class MatchBodies {
   std::byte* state(std::size_t body) { return states_.data() + body * Kernel::state_stride(header_); }
   const std::byte* state(std::size_t body) const { return const_cast<MatchBodies*>(this)->state(body); }
   const Result& result(std::size_t body) const { return *reinterpret_cast<const Result*>(state(body)); }
-  // Writable views of what the accessors above show.
+  // Writable views of the same data as the accessors above.
   Result& result(std::size_t body) { return *reinterpret_cast<Result*>(state(body)); }
   std::span<Rotations> rotations(std::size_t body);
 
   Header header_;
   std::vector<std::uint32_t> region_of_;  // the plan's
   dma::Buffer<std::byte> plan_, positions_, states_;
-  dma::Buffer<spu::MatchBody> places_;  // of the bodies to be stepped; in two dimensions unused
+  dma::Buffer<spu::MatchBody> places_;  // of the bodies to be stepped; unused in two dimensions
   dma::Buffer<typename Kernel::Job> descriptors_;
   std::vector<MatchSettings> alike_;
-  std::vector<std::size_t> stepped_;  // by the jobs added last
+  std::vector<std::size_t> stepped_;  // bodies that the jobs added last step
 };
 
 }  // namespace softcell::ppu

@@ -1,6 +1,5 @@
 #pragma once
-// The kernels that step a body as a whole, `match_2d` in two dimensions and `match` in three, behind one set
-// of names: what MatchBodies needs to know of them.
+// Gives the kernels that step a whole body, `match_2d` in two dimensions and `match` in three, one set of names for MatchBodies.
 
 #include <algorithm>
 #include <cstdint>
@@ -29,7 +28,7 @@ struct MatchKernel<2> {
   using Header = spu::MatchPlanHeader2d;
   using Vector = spu::MatchVector2d;
   using Rotations = spu::MatchDirections;   // of four regions
-  using Particles = spu::MatchParticles2d;  // of four, and so the regions
+  using Particles = spu::MatchParticles2d;  // of four particles; regions likewise
   using Regions = spu::MatchRegions2d;
   using Result = spu::MatchResult2d;
   using Job = spu::MatchJob2d;

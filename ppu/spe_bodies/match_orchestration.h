@@ -1,5 +1,5 @@
 #pragma once
-// What the PPU side of the kernels match, match_tiles and match_2d shares.
+// What the code that runs the kernels match, match_tiles and match_2d shares.
 
 #include <cstddef>
 #include <stdexcept>
@@ -13,7 +13,7 @@ namespace softcell::ppu {
 
 inline constexpr dma::BufferOptions kSpesOnlyRead{.spe_access = dma::SpeAccess::kRead};
 
-/// Of a buffer of bytes that holds words.
+/// The options of a buffer of bytes that holds 32-bit words.
 inline dma::BufferOptions of_floats(dma::BufferOptions options = {}) {
   options.element_bytes = sizeof(float);
   return options;

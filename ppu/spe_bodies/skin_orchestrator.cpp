@@ -28,7 +28,7 @@ struct SkinOrchestrator::Body {
     dma::Buffer<SkinJob> jobs;
     dma::Buffer<SkinnedVertex> vertices;
     Eigen::Vector3f origin{0, 0, 0};
-    bool skinned = false;  ///< its vertices are those of its corners
+    bool skinned = false;  ///< its vertices match its corners
   };
   const Model* model;
   std::array<Half, 2> half;
@@ -60,7 +60,7 @@ SkinOrchestrator::SkinOrchestrator(dma::AddressSpace& memory, JobSystem& jobs,
 
 SkinOrchestrator::~SkinOrchestrator() = default;
 
-/// Bodies have come or gone: nothing of the jobs that were added serves them.
+/// Bodies have come or gone: the jobs that were added are useless now.
 void SkinOrchestrator::forget_jobs() {
   for (std::size_t half = 0; half < chains_.size(); ++half) {
     chains_[half].wait();
@@ -140,7 +140,7 @@ void SkinOrchestrator::remove(std::size_t body) {
   if (failure) std::rethrow_exception(failure);
 }
 
-/// @return false, with nothing done: the vertices are there already, as the body has not moved since they were made
+/// @return false, with nothing done: the half has these vertices already, as the body has not moved since
 bool SkinOrchestrator::write_half(Body& body, std::span<const Eigen::Vector4f> positions) {
   Body::Half& half = body.half[static_cast<std::size_t>(working_)];
   if (positions.size() != half.corners.size()) {
@@ -173,7 +173,7 @@ bool SkinOrchestrator::write_half(Body& body, std::span<const Eigen::Vector4f> p
   return true;
 }
 
-/// Of bodies that have moved.
+/// Chooses the jobs of the bodies that have moved.
 void SkinOrchestrator::choose_jobs() {
   const auto half = static_cast<std::size_t>(working_);
   if (skins_[half] == moved_) return;
@@ -190,7 +190,7 @@ void SkinOrchestrator::choose_jobs() {
   skins_[half] = moved_;
 }
 
-/// Null: none is, or there was nothing to do for it.
+/// Null: no chain is under way, or it had nothing to do.
 JobChain* SkinOrchestrator::chain_under_way() {
   if (!in_flight_) return nullptr;
   JobChain& chain = chains_[static_cast<std::size_t>(working_)];
@@ -235,7 +235,7 @@ SkinnedBody SkinOrchestrator::shown(std::size_t body) const {
   SC_ASSERT(body < bodies_.size(), "body {} of {}", body, bodies_.size());
   if (shown_ < 0) return {};
   const Body::Half& half = bodies_[body]->half[static_cast<std::size_t>(shown_)];
-  if (!half.skinned) return {};  // it was added since
+  if (!half.skinned) return {};  // it was added after that frame
   return {half.vertices.span(), half.origin};
 }
 

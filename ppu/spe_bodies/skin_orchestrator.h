@@ -28,9 +28,8 @@ struct SkinnedBody {
   Eigen::Vector3f origin{0, 0, 0};  ///< world position, metres
 };
 
-/// What skinned vertices are relative to: a point below all particles by a margin that is not tiny against
-/// the body, so that every relative coordinate is a normal half float with an error far below its unit in the
-/// last place. @pre at least one position
+/// The point that skinned vertices are relative to. It lies below all particles, by a margin that is not tiny compared with the body, so
+/// that each relative coordinate is a normal half float with an error far below its unit in the last place. @pre at least one position
 Eigen::Vector3f skin_origin(std::span<const Eigen::Vector4f> positions);
 
 /// Used by the PPU thread alone.
@@ -42,27 +41,26 @@ class SkinOrchestrator {
   SkinOrchestrator(const SkinOrchestrator&) = delete;
   SkinOrchestrator& operator=(const SkinOrchestrator&) = delete;
 
-  /// Adds a body; its number counts from 0. The embedding's groups are copied into main memory, once for all
-  /// bodies that share the embedding. @throws std::runtime_error  when main memory is full.
+  /// Adds a body; numbers count from 0. Copies the embedding's groups into main memory, once for all bodies that share the embedding.
+  /// @throws std::runtime_error  main memory is full.
   std::size_t add(std::shared_ptr<const Embedding> embedding, std::size_t particles);
 
-  /// Waits for the frame under way and gives a body, which has broken, another embedding. It has no vertices before its next frame.
+  /// Waits for the frame under way and gives a body that has broken another embedding. It has no vertices before its next frame.
   /// @pre the body was added. @throws std::runtime_error  as add() and kick()
   void replace(std::size_t body, std::shared_ptr<const Embedding> embedding, std::size_t particles);
 
-  /// Waits for the frame under way and takes a body out; those behind it count one less from now on.
-  /// @pre the body was added. @throws std::runtime_error  as kick(); the body is taken out all the same.
+  /// Waits for the frame under way and removes a body; the numbers of bodies behind it decrease by one.
+  /// @pre the body was added. @throws std::runtime_error  as kick(); the body is removed nevertheless.
   void remove(std::size_t body);
 
-  /// Starts skinning one frame: copies each body's particle positions (in order of add()) and queues the
-  /// jobs of those that have moved since the frame before last. Never waits.
-  /// @return false, with nothing done, when the SPEs have not finished the frame before.
-  /// @throws std::runtime_error  when a job of the frame before failed: one sentence per fault.
+  /// Starts skinning one frame: copies each body's particle positions (in order of add()) and queues jobs for the bodies that have moved
+  /// since the frame before last. Never waits.
+  /// @return false, with nothing done, if the SPEs have not finished the previous frame.
+  /// @throws std::runtime_error  a job of the previous frame failed: one sentence per fault.
   bool kick(std::span<const std::span<const Eigen::Vector4f>> positions);
 
-  /// Waits for the frame under way and makes it the one that is shown: for runs whose pictures must not
-  /// depend on the speed of the host. @return false when there was none under way. @throws std::runtime_error
-  /// as kick().
+  /// Waits for the frame under way and makes it the one that is shown, for runs whose pictures must not depend on the speed of the host.
+  /// @return false if no frame was under way. @throws std::runtime_error as kick().
   bool drain();
 
   /// The newest complete frame; empty vertices before the body's first one. @pre the body was added
@@ -85,14 +83,14 @@ class SkinOrchestrator {
   std::vector<std::unique_ptr<Model>> models_;
   std::vector<std::unique_ptr<Body>> bodies_;
   std::size_t jobs_per_frame_ = 0;
-  std::vector<bool> moved_;  // of each body: its vertices are made in this frame
+  std::vector<bool> moved_;  // of each body: this frame makes its vertices
   bool in_flight_ = false;
   int working_ = 0;  // the half that the SPEs write, or wrote last
   int shown_ = -1;   // the half that is complete
-  /// Of each half, for each body: its jobs are in the half's chain. From frame to frame they only change what they point to, until
-  /// other bodies move than before.
+  /// For each half and body: the half's chain has jobs for it. From frame to frame only the addresses in the jobs change, until other
+  /// bodies move than before.
   std::array<std::vector<bool>, 2> skins_;
-  std::array<JobChain, 2> chains_;  // last: ended before what their jobs work on goes
+  std::array<JobChain, 2> chains_;  // last member: chains end before their jobs' memory is freed
 };
 
 }  // namespace softcell::ppu

@@ -7,7 +7,7 @@
 namespace softcell::ppu {
 namespace {
 
-/// The sum over units of how many of something they have.
+/// The number of elements that this list has in all units together.
 template <typename T>
 std::size_t count_of(std::span<const AttachUnit> units, std::vector<T> AttachUnit::*list) {
   std::size_t count = 0;
@@ -15,7 +15,7 @@ std::size_t count_of(std::span<const AttachUnit> units, std::vector<T> AttachUni
   return count;
 }
 
-/// Appends to what is in the buffer already. @return  where it begins
+/// Appends to the buffer's content. @return  the address of the first appended element
 template <typename T>
 std::uint64_t append(dma::Buffer<T>& buffer, std::size_t& used, const std::vector<T>& items) {
   if (items.empty()) return 0;

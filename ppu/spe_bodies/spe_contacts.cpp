@@ -18,19 +18,20 @@ namespace {
 using Eigen::Vector3f;
 
 constexpr std::size_t kQuadsOfBoxes = sizeof(spu::FindBoxes) / sizeof(spu::FindEnd);
-constexpr std::size_t kMostPairs = 4096;  // that are looked at by the SPEs in a step
-constexpr std::size_t kContactsInRoom = 2 * ContactWorker::kMostContacts;  // of one buffer
-constexpr std::size_t kJobsPerSpe = 4;  // of finding: some pairs take longer than others
-// Room for what is found: of up to 512 tasks for all that a task may find, of many more for what bodies in a heap have in common.
+constexpr std::size_t kMostPairs = 4096;                                   // that the SPEs look at in a step
+constexpr std::size_t kContactsInRoom = 2 * ContactWorker::kMostContacts;  // in one buffer
+constexpr std::size_t kJobsPerSpe = 4;  // for finding: some pairs take longer than others
+// Room for contacts: up to 512 tasks get room for the most that a task may find; with many more, each has room for as many as two bodies
+// in a heap have in common.
 constexpr std::size_t kContactsOfAll = std::size_t{512} * spu::kFindMaxContacts, kLeastContactsOfTask = 48;
 
-/// An empty chain for so many jobs. @pre it has ended
+/// Empties a chain and reserves room for so many jobs. @pre it has ended
 void make_room(JobChain& chain, std::size_t count) {
   chain.clear();
   chain.reserve(count + count / 4);
 }
 
-/// Room for those that a job of so many tasks finds, of so many in all.
+/// Room for the contacts that a job of `tasks` tasks finds, of `all_tasks` in all.
 std::size_t contacts_of_job(std::size_t all_tasks, std::size_t tasks) {
   constexpr std::size_t kMost = spu::kFindMaxContacts;
   const std::size_t of_task =
@@ -78,12 +79,12 @@ const SpeContacts::Model* SpeContacts::model_of(const ContactModel& contact) {
   return model.get();
 }
 
-/// Another model may get the same address: nothing that is known of places goes on.
+/// Another model may get the same address, so all that is known of places is forgotten.
 void SpeContacts::forget(const ContactModel& model) {
   if (models_.erase(&model) > 0) places_.clear();
 }
 
-/// Of all bodies. @return  whether they are the same bodies as before, as far as memory is concerned
+/// Sets the places of all bodies. @return  whether places in memory are the same as in the step before
 bool SpeContacts::find_places(std::size_t& state, std::size_t& velocities) {
   bool same = places_.size() == bodies_.size();
   places_.resize(bodies_.size());
@@ -102,7 +103,7 @@ bool SpeContacts::find_places(std::size_t& state, std::size_t& velocities) {
 }
 
 void SpeContacts::begin(std::span<const ContactBody> bodies, float step) {
-  finding_.wait();  // of a substep that failed before it asked for what was found
+  finding_.wait();  // of a substep that failed before it called found()
   bodies_ = bodies;
   step_ = step;
   room_ = used_ = 0;
@@ -124,7 +125,7 @@ std::size_t SpeContacts::ends_of(std::uint32_t body) const {
   return places_[body].state + (places_[body].model->cells.size() + 3) / 4 * kQuadsOfBoxes;
 }
 
-/// @param was_there  in the step before, at the same place: then its way is known
+/// @param was_there  the body was at the same place in memory in the step before, so its way is known
 void SpeContacts::write_particles(std::uint32_t i, bool was_there) {
   const ContactBody& body = bodies_[i];
   const Model& model = *places_[i].model;
@@ -135,7 +136,7 @@ void SpeContacts::write_particles(std::uint32_t i, bool was_there) {
   for (std::size_t p = 0; p < count; ++p) {
     const Vector3f &x = body.positions[p], &end = body.ends[p];
     begins[p] = {x.x(), x.y(), x.z(), body.asleep ? 0.0f : model.inverse_root_masses[p]};
-    // Number by number: a quadword read right behind its four parts waits for them in the store buffer.
+    // Number by number: reading a whole quadword right after writing its four parts would wait for the store buffer.
     const Vector3f way(end.x() - ends[p].x, end.y() - ends[p].y, end.z() - ends[p].z);
     least = least.cwiseMin(way);
     most = most.cwiseMax(way);
@@ -153,7 +154,7 @@ std::size_t SpeContacts::start_of(std::uint32_t body) const {
   return places_[body].velocities + spu::solve_slots(static_cast<std::uint32_t>(bodies_[body].ends.size()));
 }
 
-/// Of cells, and of the whole body.
+/// The boxes of the cells and of the whole body.
 void SpeContacts::write_boxes(std::uint32_t i) {
   using Row = Eigen::Array4f;
   const Model& model = *places_[i].model;
@@ -206,14 +207,14 @@ spu::FindTask SpeContacts::find_task(std::uint32_t a, std::uint32_t b) {
   return task;
 }
 
-/// Appends the tasks of a pair.
+/// Appends the tasks of a pair, if the boxes of both bodies overlap.
 SpeContacts::Asked SpeContacts::ask(std::uint32_t a, std::uint32_t b) {
-  // What two bodies have in common at the end is less than what they have on their ways.
+  // Compares the boxes at the end of the substep: they overlap less than boxes around the bodies' ways.
   if (!(end_boxes_[a].low.array() <= end_boxes_[b].high.array()).all() ||
       !(end_boxes_[b].low.array() <= end_boxes_[a].high.array()).all())
     return {};
   spu::FindTask task = find_task(a, b);
-  const bool with_cracks = a == b && !bodies_[a].model->crack_sides.empty();  // the kernel knows none
+  const bool with_cracks = a == b && !bodies_[a].model->crack_sides.empty();  // the kernel ignores cracks
   if (tasks_.size() >= kMostPairs || with_cracks) return {.by_caller = true};
   if (spu::find_bytes(task) > spu::kFindMaxBytes) return ask_in_parts({a, b}, task);
   const CandidatePairs::Known& known =
@@ -292,7 +293,7 @@ void SpeContacts::find(std::span<const Pair> pairs) {
   if (job_count != 0) finding_.kick();
 }
 
-/// What is in them stays.
+/// Keeps the content.
 void SpeContacts::make_room_for_candidates() {
   const std::size_t count = pairs_.slots() * spu::kFindMaxCandidates;
   if (count <= candidates_.size()) return;
@@ -301,8 +302,8 @@ void SpeContacts::make_room_for_candidates() {
   candidates_ = std::move(more);
 }
 
-/// Tasks for which the others of their jobs have left no room: each in a job of its own. The result must not depend on which tasks share
-/// a job, as that depends on the number of SPEs.
+/// Repeats tasks that found no room because of the other tasks of their jobs, each in a job of its own. The result must not depend on which
+/// tasks share a job, as that depends on the number of SPEs.
 void SpeContacts::find_again() {
   const auto is_left = [&](std::size_t task) { return results_[task].overflow == spu::kFindJobIsFull; };
   std::size_t count = 0;
@@ -372,7 +373,7 @@ std::span<const FoundContacts> SpeContacts::found() {
   return found_;
 }
 
-/// One part's contacts behind those of another.
+/// Puts the contacts of all parts of a pair one after the other.
 FoundContacts SpeContacts::found_in_parts(const Asked& asked) {
   FoundContacts found;
   std::size_t count = 0;
@@ -436,7 +437,7 @@ dma::EffectiveAddress SpeContacts::ea_of(const spu::SolveContact* contact) const
   return room->ea(static_cast<std::size_t>(contact - room->data()));
 }
 
-/// More contacts than a local store has room for are solved in parts, one after the other.
+/// Splits contacts into several tasks, one after the other, if there are more than a local store has room for.
 void SpeContacts::write_tasks(const SolveGroup& group) {
   std::span<spu::SolveContact> rest = group.contacts;
   do {
@@ -446,7 +447,7 @@ void SpeContacts::write_tasks(const SolveGroup& group) {
   } while (!rest.empty());
 }
 
-/// @param last  cells are stiffened, too
+/// @param last  this task also stiffens cells
 spu::SolveTask SpeContacts::solve_task(const SolveGroup& group, std::span<const spu::SolveContact> contacts,
                                        bool last) {
   spu::SolveTask task{};

@@ -1,8 +1,8 @@
 #pragma once
-// Contacts of soft bodies on SPEs, by the kernels `contact_find` and `contact_solve`, and attachments between them, by `attach`.
+// Finds and solves contacts of soft bodies on SPEs, with the kernels `contact_find` and `contact_solve`, and attachments with `attach`.
 //
 //     begin   positions, ends, boxes of cells, velocities --> main memory
-//     find    a chain of jobs, each some pairs of bodies
+//     find    a chain of jobs, each for some pairs of bodies
 //     solve   a chain with a stage for each of SolveStages, a job for each unit
 
 #include <memory>
@@ -22,7 +22,7 @@
 
 namespace softcell::ppu {
 
-/// Their images, which outlive what uses them.
+/// The kernels' images; they must outlive the objects that use them.
 struct ContactKernels {
   const ls_sim::KernelImage &contact_find, &contact_solve, &attach;
 };
@@ -31,8 +31,8 @@ struct ContactKernels {
 /// than ever before.
 class SpeContacts final : public ContactWorker {
  public:
-  /// `memory` and `jobs` outlive this.
-  /// It takes two chains. @throws std::runtime_error  main memory is full, or there are too few chains left.
+  /// `memory` and `jobs` must outlive this object. It needs two chains.
+  /// @throws std::runtime_error  main memory is full, or there are too few chains left.
   SpeContacts(dma::AddressSpace& memory, JobSystem& jobs, const ContactKernels& kernels);
   ~SpeContacts() override;
 
@@ -52,7 +52,7 @@ class SpeContacts final : public ContactWorker {
            std::span<const Eigen::Vector3f> pushes) override;
 
  private:
-  /// A model in main memory, and what its bodies need of it.
+  /// A model in main memory, and constants that its bodies need.
   struct Model {
     dma::Buffer<spu::FindCell> cells;
     dma::Buffer<spu::FindGroup> groups;
@@ -63,15 +63,15 @@ class SpeContacts final : public ContactWorker {
     const Model* model = nullptr;  ///< null: the body is too large
     std::size_t state = 0, velocities = 0, particles = 0;
   };
-  /// Of find_tasks_: those of a pair.
+  /// The tasks of a pair in find_tasks_.
   struct Asked {
     std::uint32_t first = 0, count = 0;  ///< 0: the two cannot touch
-    std::uint32_t first_part = kWhole;   ///< of parts_, one for each task
+    std::uint32_t first_part = kWhole;   ///< in parts_, one for each task; kWhole: none
     bool by_caller = false;
   };
   static constexpr std::uint32_t kWhole = ~0u;
   const Model* model_of(const ContactModel& contact);
-  /// Where its SolveTask::start_ea begins in velocities_, and its ends in state_.
+  /// Where the body's SolveTask::start_ea begins in velocities_, and its ends in state_.
   std::size_t start_of(std::uint32_t body) const;
   std::size_t ends_of(std::uint32_t body) const;
   bool find_places(std::size_t& state, std::size_t& velocities);
@@ -83,7 +83,7 @@ class SpeContacts final : public ContactWorker {
   Asked ask(std::uint32_t a, std::uint32_t b);
   Asked ask_in_parts(const Pair& pair, const spu::FindTask& whole);
   FindParts::Body parts_body(std::uint32_t body) const;
-  /// A job of finding: so many tasks from `task` on, and where their contacts go.
+  /// A job that finds contacts: so many tasks from `task` on, and the room for their contacts.
   struct FindPart {
     std::size_t task, tasks;
     dma::EffectiveAddress contacts;
@@ -101,7 +101,7 @@ class SpeContacts final : public ContactWorker {
   JobSystem& jobs_;
   JobImage contact_find_, contact_solve_;
   SpeAttachments attachments_;
-  std::unordered_map<const ContactModel*, std::unique_ptr<Model>> models_;  // null: too large
+  std::unordered_map<const ContactModel*, std::unique_ptr<Model>> models_;  // null: the model is too large
 
   std::span<const ContactBody> bodies_;
   float step_ = 0;
@@ -109,25 +109,25 @@ class SpeContacts final : public ContactWorker {
   std::vector<Bounds<3>> end_boxes_;  // of each body
   CandidatePairs pairs_;
 
-  dma::Buffer<spu::FindEnd> state_;             // FindBody::state_ea of each body
-  dma::Buffer<spu::SolveVelocity> velocities_;  // of each body: changes, pushes, and the start
+  dma::Buffer<spu::FindEnd> state_;             // for each body: FindBody::state_ea
+  dma::Buffer<spu::SolveVelocity> velocities_;  // for each body: changes, pushes, and the start
   std::vector<Eigen::Vector3f> started_;        // of all bodies: velocities at begin()
 
   dma::Buffer<spu::FindTask> find_tasks_;
   dma::Buffer<spu::FindCandidate> candidates_;  // kFindMaxCandidates for each of pairs_.slots()
   dma::Buffer<spu::FindResult> results_;
   dma::Buffer<spu::FindJob> find_jobs_;
-  dma::Buffer<spu::SolveContact> contacts_;            // room_of_job_ for each job
+  dma::Buffer<spu::SolveContact> contacts_;            // room_of_job_ elements for each job
   dma::Buffer<spu::SolveContact> more_contacts_;       // kFindMaxContacts for each task of find_again()
-  std::vector<dma::Buffer<spu::SolveContact>> rooms_;  // for contacts that others have found
-  std::size_t room_ = 0, used_ = 0;                    // the one that is being filled, and how far
+  std::vector<dma::Buffer<spu::SolveContact>> rooms_;  // for contacts that the PPU has found
+  std::size_t room_ = 0, used_ = 0;                    // the room that is being filled, and its used part
   dma::Buffer<spu::SolveRigid> rigids_;
   FindParts parts_;
   std::vector<spu::FindTask> tasks_;
-  std::vector<Asked> asked_;  // of each pair
+  std::vector<Asked> asked_;  // for each pair
   std::vector<std::uint32_t>
-      known_of_task_;  // which of pairs_.known() a task is about; kWhole: none, as it is a part's
-  std::size_t tasks_of_job_ = 1, room_of_job_ = 0;  // of finding_
+      known_of_task_;  // index in pairs_.known() for each task; kWhole: none, as the task is a part's
+  std::size_t tasks_of_job_ = 1, room_of_job_ = 0;  // for finding_
   std::vector<std::span<spu::SolveContact>> found_by_task_;
   std::vector<FoundContacts> found_;
 
@@ -135,7 +135,7 @@ class SpeContacts final : public ContactWorker {
   dma::Buffer<spu::SolveJob> solve_jobs_;
   dma::Buffer<spu::SolveCell> cells_;
   std::size_t cells_used_ = 0, tasks_used_ = 0;
-  JobChain finding_, solving_;  // last: ended before what their jobs work on goes
+  JobChain finding_, solving_;  // last members: chains end before their jobs' memory is freed
 };
 
 }  // namespace softcell::ppu

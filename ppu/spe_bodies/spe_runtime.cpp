@@ -38,7 +38,7 @@ struct SpeRuntime::State {
   ls_sim::Findings findings;
   dma::AddressSpace memory;
   const ls_sim::KernelImage job_loop = spu_kernels::load_kernel("job_loop", false, machine);
-  std::map<std::string, ls_sim::KernelImage, std::less<>> kernels;  // whose addresses jobs keep
+  std::map<std::string, ls_sim::KernelImage, std::less<>> kernels;  // jobs keep their addresses
   JobSystem jobs;
 };
 

@@ -81,7 +81,7 @@ SkinnedVertices SpeSkinner::vertices(const SoftBody<3>& body) const {
   SC_ASSERT(state_->bodies.size() == state_->positions.size(), "{} bodies, positions of {}",
             state_->bodies.size(), state_->positions.size());
   const SkinnedBody shown = state_->orchestrator.shown(state_->number_of(body));
-  // Eight numbers of 16 bits under either name. Nobody writes them here: an SPE does, by DMA.
+  // Both types hold eight numbers of 16 bits. The PPU never writes them: an SPE does, by DMA.
   return {{reinterpret_cast<const HalfVertex*>(shown.vertices.data()), shown.vertices.size()}, shown.origin};
 }
 

@@ -21,8 +21,7 @@ namespace {
 
 constexpr std::size_t kMostBodiesPerJob = 16;
 
-/// Enough jobs for all SPEs to have some, and few enough to fetch the plan seldom. Says nothing about the
-/// result.
+/// Enough jobs to occupy all SPEs, and few enough that the plan is seldom fetched. Does not affect the result.
 std::size_t bodies_per_job(std::size_t bodies, int spes) {
   const std::size_t jobs = 2 * static_cast<std::size_t>(spes);
   return std::clamp<std::size_t>((bodies + jobs - 1) / jobs, 1, kMostBodiesPerJob);
@@ -61,7 +60,7 @@ MatchPlan plan_of(const SoftBodyModel<3>& model, bool checked) {
   return {model.lattice(), *model.plan(), checked ? spu::kMatchCheckedArenaBytes : spu::kMatchArenaBytes};
 }
 
-/// Null: a body of the model is too large for tiles, too. There is no kernel for tiles in two dimensions.
+/// Null: bodies of the model are too large even for tiles. There is no kernel for tiles in two dimensions.
 std::shared_ptr<const TilePlan> tiles_of(const SoftBodyModel<2>& /*model*/, bool /*checked*/) {
   return nullptr;
 }
@@ -76,7 +75,7 @@ std::shared_ptr<const TilePlan> tiles_of(const SoftBodyModel<3>& model, bool che
 
 }  // namespace
 
-/// What bodies of a model are stepped by: the one, or the other, or neither. (In tiles in three dimensions only.)
+/// What the SPEs step bodies of a model with: one plan, or the other, or neither. (Tiles exist only in three dimensions.)
 template <int kDimension>
 struct SpeSolver<kDimension>::Plans {
   std::shared_ptr<const SoftBodyModel<kDimension>> model;
@@ -84,7 +83,7 @@ struct SpeSolver<kDimension>::Plans {
   std::shared_ptr<const TilePlan> tiles;
 };
 
-/// Where one body will be: in `bodies`, or in `tiled`, or nowhere.
+/// Where one body will lie: in `bodies`, or in `tiled`, or nowhere.
 template <int kDimension>
 struct SpeSolver<kDimension>::Place {
   std::shared_ptr<const Plans> plans;
@@ -92,8 +91,8 @@ struct SpeSolver<kDimension>::Place {
   std::unique_ptr<TiledMemory> tiled;
 };
 
-/// The bodies of one model: whole in `bodies`, or in tiles, each in its own memory, or neither. A body that may have a rest
-/// shape of its own is a group by itself: the plan has the rest shape.
+/// The bodies of one model: all in `bodies`, or each in tiles with memory of its own, or neither. A body that may have its own rest shape
+/// is a group by itself, because the plan contains the rest shape.
 template <int kDimension>
 struct SpeSolver<kDimension>::Group {
   std::shared_ptr<const SoftBodyModel<kDimension>> model;
@@ -101,9 +100,9 @@ struct SpeSolver<kDimension>::Group {
   std::vector<Body*> members;
   std::shared_ptr<const Plans> plans;
   std::shared_ptr<MatchBodies<kDimension>> bodies;
-  std::shared_ptr<StrainLooks<kDimension>> looks;  // null: nobody has asked, or the PPU looks
+  std::shared_ptr<StrainLooks<kDimension>> looks;  // null: not needed yet, or the PPU looks
   std::vector<std::size_t> awake;
-  std::vector<MatchSettings> settings;  // of these
+  std::vector<MatchSettings> settings;  // of the awake ones
 };
 
 template <int kDimension>
@@ -118,16 +117,16 @@ struct SpeSolver<kDimension>::Member {
   bool fits_spes() const { return group->bodies || tiled; }
 };
 
-/// The layout of memory before the one that is made.
+/// The layout of memory before the one that is being made.
 template <int kDimension>
 struct SpeSolver<kDimension>::Known {
   using Model = SoftBodyModel<kDimension>;
 
   std::unordered_map<const Body*, Member*> members;
-  std::unordered_map<const Model*, std::shared_ptr<const Plans>> plans;  // and those made since
-  std::unordered_map<const Model*, Place> places;                        // made ahead
+  std::unordered_map<const Model*, std::shared_ptr<const Plans>> plans;  // known ones, and new ones
+  std::unordered_map<const Model*, Place> places;                        // prepared ahead
 
-  /// The same body in it, or null.
+  /// The same body in this layout, or null.
   Member* find(const Member& member) const {
     const auto old = members.find(member.body);
     return old != members.end() && old->second->group->model == member.group->model ? old->second : nullptr;
@@ -144,7 +143,7 @@ SpeSolver<kDimension>::SpeSolver(dma::AddressSpace& memory, JobSystem& jobs,
       checked_(whole(kernels).checked),
       chain_(jobs, "soft bodies", 1) {
   if (kernels.strain != nullptr) strain_ = jobs.load(*kernels.strain);
-  regroup({});  // a world without soft bodies steps, too
+  regroup({});  // so that a world without soft bodies can step, too
 }
 
 template <int kDimension>
@@ -159,7 +158,7 @@ bool SpeSolver<kDimension>::knows(std::span<Body* const> bodies) const {
                     });
 }
 
-/// Plans take a while: a model's are made once.
+/// Making plans takes a while, so each model's plans are made once.
 template <int kDimension>
 void SpeSolver<kDimension>::find_place(Group& group, Known& known) {
   SC_ASSERT(group.model != nullptr && !group.members.empty(), "a group of {} bodies {} a model",
@@ -182,7 +181,7 @@ void SpeSolver<kDimension>::find_place(Group& group, Known& known) {
     group.bodies = std::make_shared<MatchBodies<kDimension>>(memory_, *plans->whole, group.members.size());
 }
 
-/// Whole where they fit, else in tiles, else by the PPU.
+/// As a whole if it fits, else in tiles, else by the PPU.
 template <int kDimension>
 auto SpeSolver<kDimension>::plans_of(const std::shared_ptr<const SoftBodyModel<kDimension>>& model) const
     -> Plans {
@@ -204,7 +203,7 @@ auto SpeSolver<kDimension>::place_for(const std::shared_ptr<const Plans>& plans)
   return place;
 }
 
-/// A memory that is full now may have room when the body comes: then kick() lays it out, or reports it.
+/// Memory that is full now may have room when the body comes: then kick() lays it out, or reports the error.
 template <int kDimension>
 void SpeSolver<kDimension>::prepare(const std::shared_ptr<const SoftBodyModel<kDimension>>& model) {
   Place place{std::make_shared<const Plans>(plans_of(model)), nullptr, nullptr};
@@ -220,7 +219,7 @@ template <int kDimension>
 void SpeSolver<kDimension>::inherit_state(const Body& whole, const Body& piece,
                                           std::span<const std::uint32_t> particle_of) {
   SC_ASSERT(!is_stepping_, "a body breaks with {} jobs under way", chain_.size());
-  if constexpr (kDimension == 3) {  // in two a rotation has a closed form
+  if constexpr (kDimension == 3) {  // in two dimensions a rotation has a closed form
     const auto rotations_at = [](const Body& body, const Plans& plans, MatchBodies<3>* bodies,
                                  std::size_t number, TiledMemory* tiled) -> std::optional<RegionRotations> {
       if (bodies != nullptr) return bodies->region_rotations(number);
@@ -240,7 +239,7 @@ void SpeSolver<kDimension>::inherit_state(const Body& whole, const Body& piece,
   }
 }
 
-/// Those that nobody can have bodies of any longer go.
+/// Also drops prepared places of models that can have no more bodies.
 template <int kDimension>
 void SpeSolver<kDimension>::take_prepared(Known& known, std::span<Body* const> bodies) {
   std::unordered_set<const SoftBodyModel<kDimension>*> models;
@@ -255,7 +254,7 @@ void SpeSolver<kDimension>::take_prepared(Known& known, std::span<Body* const> b
   });
 }
 
-/// Rotations from one layout of memory to the next.
+/// Copies rotations from the old layout of memory to the new one.
 template <int kDimension>
 void SpeSolver<kDimension>::take_over(Member& member, Member& old) {
   SC_ASSERT(member.group->model == old.group->model, "a body of {} particles has changed its model",
@@ -267,7 +266,7 @@ void SpeSolver<kDimension>::take_over(Member& member, Member& old) {
     bodies->take_rotations(member.number, *old.group->bodies, old.number);
 }
 
-/// The plan gets the rest shape that the body has now.
+/// Updates the plan to the body's present rest shape.
 template <int kDimension>
 void SpeSolver<kDimension>::follow_rest(Member& member) {
   const Body& body = *member.body;
@@ -280,8 +279,7 @@ void SpeSolver<kDimension>::follow_rest(Member& member) {
   if constexpr (kDimension == 3) member.tiled->set_rest(*member.group->plans->tiles, *body.plan());
 }
 
-/// Bodies have come or gone: memory is laid out anew for those models whose bodies are others than before, and those that stay take their
-/// rotations along.
+/// Bodies have come or gone: lays out memory anew for the models whose bodies have changed. Bodies that stay keep their rotations.
 template <int kDimension>
 void SpeSolver<kDimension>::regroup(std::span<Body* const> bodies) {
   Known known;
@@ -309,7 +307,7 @@ void SpeSolver<kDimension>::regroup(std::span<Body* const> bodies) {
   }
   for (const auto& group : groups) find_place(*group, known);
 
-  // All that may fail comes before anything is taken from what there is.
+  // Everything that may fail comes before anything is taken from the old layout.
   std::size_t jobs = 0;
   for (Member& member : members) {
     const Member* const old = known.find(member);
@@ -322,18 +320,18 @@ void SpeSolver<kDimension>::regroup(std::span<Body* const> bodies) {
         member.tiled = std::make_unique<TiledMemory>(memory_, *group.plans->tiles);
     }
     const TiledMemory* const tiled = old != nullptr ? old->tiled.get() : member.tiled.get();
-    jobs += 1 + (tiled != nullptr ? tiled->most_jobs() : 1);  // the first is a look
+    jobs += 1 + (tiled != nullptr ? tiled->most_jobs() : 1);  // the first 1 is for a look
   }
   chain_.reserve(jobs);
   for (Member& member : members)
     if (Member* const old = known.find(member)) take_over(member, *old);
-  chain_.wait();  // of a step that was dropped: its jobs work on what goes now
+  chain_.wait();  // for a step that was dropped: its jobs use memory that is freed now
   chain_.clear();
   groups_ = std::move(groups);
   members_ = std::move(members);
 }
 
-/// A job beside the step's, for a body that may yield or break. Its positions are in main memory.
+/// Adds a job beside the step's, for a body that may yield or break. The body's positions are in main memory already.
 template <int kDimension>
 void SpeSolver<kDimension>::look_at(Member& member) {
   const Body& body = *member.body;
@@ -366,7 +364,7 @@ bool SpeSolver<kDimension>::may_break(const Body& body) const {
          member->group->looks->may_break(member->number);
 }
 
-/// Positions and velocities to main memory.
+/// Copies positions and velocities to main memory.
 template <int kDimension>
 void SpeSolver<kDimension>::hand_over(Member& member) {
   using Kernel = MatchKernel<kDimension>;
@@ -432,7 +430,7 @@ void SpeSolver<kDimension>::kick(std::span<Body* const> bodies, float step) {
   if (chain_.size() != 0) chain_.kick();
 }
 
-/// Velocities from main memory.
+/// Copies velocities from main memory.
 template <int kDimension>
 void SpeSolver<kDimension>::take_back(const Member& member) {
   using Kernel = MatchKernel<kDimension>;
@@ -451,11 +449,11 @@ void SpeSolver<kDimension>::take_back(const Member& member) {
 
 template <int kDimension>
 void SpeSolver<kDimension>::finish() {
-  is_stepping_ = false;  // also if something throws
+  is_stepping_ = false;  // also if an exception is thrown
   try {
     for (Body* const body : left_to_ppu_) body->pull(step_), body->flow(step_);
   } catch (...) {
-    chain_.wait();  // its jobs work on what the next kick() changes
+    chain_.wait();  // its jobs use memory that the next kick() changes
     throw;
   }
   chain_.wait();

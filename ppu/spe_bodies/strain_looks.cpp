@@ -15,10 +15,10 @@
 namespace softcell::ppu {
 namespace {
 
-/// A look at fewer takes less time than handing it over, which are some microseconds.
+/// A look at fewer particles takes less time than handing it over, which takes some microseconds.
 constexpr std::size_t kLeastParticles = 128;
 
-/// Of a face across `axis`: corner k of its four, in a cell on that side. In two dimensions corners are there twice.
+/// Corner k of the four of a face across `axis`, in the cell on side `side`. In two dimensions each corner appears twice.
 template <int kDimension>
 unsigned corner_of_face(unsigned axis, unsigned side, unsigned k) {
   unsigned corner = side << axis, bit = 0;
@@ -55,7 +55,7 @@ std::uint16_t StrainLooks<kDimension>::place_of(std::uint32_t particle) const {
   return static_cast<std::uint16_t>(place_of_.empty() ? particle : place_of_[particle]);
 }
 
-/// Faces that are broken already, and those that never break, are not looked at.
+/// Leaves out faces that are broken already, and those that never break.
 template <int kDimension>
 void StrainLooks<kDimension>::write_faces() {
   has_faces_ = true;
@@ -115,7 +115,7 @@ void StrainLooks<kDimension>::write_lengths(const Body& body) {
   rest_of_lengths_ = body.rest_revision();
 }
 
-/// A rest shape that has just changed is likely to change again: its distances are written at the second look at it.
+/// A rest shape that has just changed is likely to change again, so its distances are written only at the second look at it.
 template <int kDimension>
 bool StrainLooks<kDimension>::has_lengths_of(const Body& body) {
   if (rest_of_lengths_ == body.rest_revision()) return true;
@@ -150,7 +150,7 @@ std::optional<dma::EffectiveAddress> StrainLooks<kDimension>::job(std::size_t nu
     job.stretch = fracture->stretch.value_or(spu::kStrainNever);
     job.turn = fracture->turn.value_or(spu::kStrainNever);
   }
-  // A face that nobody looks at may have broken.
+  // A face that no job looks at may have broken.
   results_[number] = {.edges = 0, .diagonals = 0, .faces = at_faces ? 0u : 1u, .pad = 0};
   if (job.edge_groups + job.diagonal_groups + job.face_groups == 0) return std::nullopt;
   return jobs_.ea(number);

@@ -1,13 +1,13 @@
 #pragma once
-// How much bodies of one model are strained, as the kernel `strain` finds it on the SPEs.
+// Measures on the SPEs, with the kernel `strain`, how much bodies of one model are strained.
 //
 //     StrainLooks<3> looks(memory, model, places, bodies);
-//     if (const auto job = looks.job(number, body, positions_ea))   // of bodies that break, or that are about to look whether they yield
+//     if (const auto job = looks.job(number, body, positions_ea))   // for bodies that break, or will soon check for yielding
 //       chain.add({strain, *job});
 //     ...                                                           // the chain's jobs run
-//     if (!looks.may_break(number)) ...                             // nobody has to look closer
+//     if (!looks.may_break(number)) ...                             // the PPU need not look closer
 //
-// A look on an SPE is a hint on the safe side. What yields and what breaks is decided by the PPU, as without SPEs.
+// The result of an SPE is a hint on the safe side. The PPU decides what yields and what breaks, as it does without SPEs.
 
 #include <cstddef>
 #include <cstdint>
@@ -22,7 +22,7 @@
 
 namespace softcell::ppu {
 
-/// Used by one thread at a time. While jobs are under way nothing may be asked.
+/// Used by one thread at a time. While jobs are under way, call nothing.
 /// @tparam kDimension  2 or 3
 template <int kDimension>
 class StrainLooks {
@@ -30,24 +30,25 @@ class StrainLooks {
   using Body = SoftBody<kDimension>;
   using Model = SoftBodyModel<kDimension>;
 
-  /// Whether it is worth a job, and fits a local store. @param places  of positions in main memory, those between particles included
+  /// Whether a look is worth a job and fits a local store. @param places  number of positions in main memory, including gaps between
+  /// particles
   static bool can_look_at(const Model& model, std::size_t places);
 
-  /// @param place_of  of each particle: where its position lies; empty: particle i is the i-th
+  /// @param place_of  for each particle: where its position lies; empty: particle i lies at i
   /// @pre can_look_at()   @throws std::runtime_error  main memory is full.
   StrainLooks(dma::AddressSpace& memory, std::shared_ptr<const Model> model,
               std::span<const std::uint32_t> place_of, std::size_t places, std::size_t bodies);
 
-  /// The descriptor of a job that looks at a body, if there is something to look for: at the distances in a plastic body whose next flow()
-  /// looks at them, which has a StrainLooks for itself and has had its rest shape at the look before; at the faces of another one that may
-  /// break, if it has its model's rest shape.
+  /// The descriptor of a job that looks at a body, if there is anything to look for. It looks at distances if the next flow() of a plastic
+  /// body looks at them, provided the body does not share this object with others and had the same rest shape at the look before. It looks
+  /// at faces of other bodies that may break, provided they have the model's rest shape.
   /// @param positions  where they lie   @throws std::runtime_error  main memory is full.
   std::optional<dma::EffectiveAddress> job(std::size_t number, const Body& body,
                                            dma::EffectiveAddress positions);
 
-  /// Of the body's last job(). False: no face has broken.
+  /// The result of the body's last job(). False: no face has broken.
   bool may_break(std::size_t number) const;
-  /// Of the body's last job(): what SoftBody::flow() takes; nothing if distances were not looked at.
+  /// The result of the body's last job(), for SoftBody::flow(); nothing if distances were not looked at.
   std::optional<float> stretch(std::size_t number) const;
 
  private:
@@ -58,16 +59,16 @@ class StrainLooks {
 
   dma::AddressSpace& memory_;
   std::shared_ptr<const Model> model_;
-  std::vector<std::uint32_t> place_of_;  // none: particle i is the i-th
+  std::vector<std::uint32_t> place_of_;  // empty: particle i lies at i
   std::uint32_t places_;
   dma::Buffer<spu::StrainJob> jobs_;
   dma::Buffer<spu::StrainResult> results_;
-  // Empty until a body wants them.
+  // Empty until a body needs them.
   dma::Buffer<spu::StrainFaces> faces_;
   dma::Buffer<spu::StrainLengths> lengths_;
-  bool has_faces_ = false;         // written; there may be none
-  std::uint32_t edge_groups_ = 0;  // of `lengths_`; the others are of diagonals
-  // SoftBody::rest_revision() of `lengths_`, and of the last look.
+  bool has_faces_ = false;         // written already, even if there are none
+  std::uint32_t edge_groups_ = 0;  // in `lengths_`; the other groups are diagonals
+  // SoftBody::rest_revision() of `lengths_`, and at the last look.
   std::optional<std::uint32_t> rest_of_lengths_, seen_rest_;
 };
 

@@ -16,7 +16,7 @@ namespace softcell::ppu {
 
 namespace {
 
-/// A buffer with what is in `items`.
+/// A buffer with a copy of `items`.
 template <typename T>
 dma::Buffer<T> copied(dma::AddressSpace& memory, const char* name, std::span<const T> items,
                       const dma::BufferOptions& options = of_floats(kSpesOnlyRead)) {
@@ -69,7 +69,7 @@ TiledMemory::TiledMemory(dma::AddressSpace& memory, const TilePlan& plan)
 
   std::size_t first_slice = 0;
   for (std::uint32_t tile = 0; tile < plan.tiles().size(); ++tile) {
-    // A tile that has no regions of its own, or no particles, never reports.
+    // A tile without regions of its own, or without particles, never reports.
     reports_[tile].positions_finite = reports_[tile].velocities_finite = 1;
     const TilePlan::Tile& slices = plan.tiles()[tile];
     const auto add_job = [&](spu::TilePass pass, const std::vector<spu::TileSlice>& of_pass) {

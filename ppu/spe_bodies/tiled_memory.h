@@ -1,6 +1,5 @@
 #pragma once
-// One body that no local store holds, in main memory, as the kernel `match_tiles` steps it: all SPEs
-// together.
+// One body that is too large for a local store, in main memory: all SPEs step it together with the kernel `match_tiles`.
 //
 //     const TilePlan plan(lattice, matching);
 //     TiledMemory body(memory, plan);
@@ -11,7 +10,7 @@
 //     body.end_step();
 //     ... = body.velocities()[plan.place_of()[i]]
 //
-// The same bits as those of MatchBodies on a body that fits.
+// The result has the same bits as that of MatchBodies on a body that fits.
 
 #include <array>
 #include <cstdint>
@@ -30,48 +29,47 @@ namespace softcell::ppu {
 /// In the order of a step.
 inline constexpr std::array kTilePasses{spu::kTileGather, spu::kTileScatter, spu::kTileTwist, spu::kTileDamp};
 
-/// A body in tiles as it lies in main memory, and the jobs of its step, for whoever runs them.
+/// A body in tiles as it lies in main memory, and the jobs of its step, for the code that runs them.
 class TiledMemory {
  public:
   using Vector = MatchBodies<3>::Vector;
 
-  /// The plan is copied. Main memory: about 250 bytes a particle, 55 MB for 200,000.
+  /// Copies the plan. Main memory: about 250 bytes a particle, 55 MB for 200,000.
   /// @throws std::runtime_error  main memory is full.
   TiledMemory(dma::AddressSpace& memory, const TilePlan& plan);
 
   std::size_t tiles() const { return reports_.size(); }
 
-  /// By place, see TilePlan::place_of(). Leave the places between as they are.
+  /// By place, see TilePlan::place_of(). Do not change the places between.
   std::span<Vector> positions() { return positions_.span(); }    ///< metres; a step does not change them
   std::span<Vector> velocities() { return velocities_.span(); }  ///< m/s
   dma::EffectiveAddress positions_ea() const { return positions_.ea(); }
 
-  /// The constants of another rest shape. @param plan  the one that the body was made from
+  /// Takes the constants of another rest shape. @param plan  the one that the body was made from
   void set_rest(const TilePlan& plan, const MatchingPlan<float, 3>& matching);
 
-  /// The rotations that the next step begins with, good until end_step(). @param plan  as above
+  /// The rotations that the next step begins with, valid until end_step(). @param plan  as above
   RegionRotations region_rotations(const TilePlan& plan, const SumPlan& sums);
 
-  /// Before the jobs run. @throws std::invalid_argument  settings out of their ranges.
+  /// Call it before the jobs run. @throws std::invalid_argument  settings out of their ranges.
   void begin_step(const MatchSettings& settings);
 
-  /// The descriptor of one job of the step begun; none where a tile has nothing to do in that pass.
+  /// The descriptor of one job of the current step; none where a tile has nothing to do in that pass.
   std::optional<dma::EffectiveAddress> job(spu::TilePass pass, std::size_t tile) const;
 
-  /// The jobs of one pass of the step begun. All of a pass, in the order of kTilePasses, must have ended
-  /// before one of the next begins; bodies may go through a pass together.
+  /// Adds the jobs of one pass of the current step. All jobs of a pass must have ended before one of the next pass begins, in the order of
+  /// kTilePasses; several bodies may go through a pass together.
   void add_jobs(JobChain& chain, const JobImage& match_tiles, spu::TilePass pass) const;
   /// The most jobs that a step has.
   std::size_t most_jobs() const { return jobs_.size(); }
 
-  /// When all have ended. @throws std::runtime_error  positions or velocities are no numbers; nothing has
-  /// changed.
+  /// Call it when all jobs have ended. @throws std::runtime_error  a position or velocity is not finite; nothing has changed.
   void end_step();
 
   /// The largest |axial(R^T A)| of the last step over the sum of |A|'s elements, roughly radians.
   float residual() const;
 
-  /// Forgets the rotations: after a teleport. The next step starts cold; that is also how a body begins.
+  /// Forgets the rotations, after a teleport: the next step starts cold, as a new body's first step does.
   void reset();
 
  private:

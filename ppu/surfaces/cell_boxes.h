@@ -1,5 +1,5 @@
 #pragma once
-// Boxes around the cells of a body on their ways through a substep.
+// Boxes around the cells of a body that cover the cells' motion during a substep.
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -31,10 +31,10 @@ class CellBoxes {
     });
   }
 
-  /// Metres along each axis: no particle goes farther.
+  /// How far any particle moves at most, in metres along each axis.
   Eigen::Vector3f longest_way() const { return longest_way_; }
 
-  /// Around one cell.
+  /// The box around one cell.
   Bounds<3> at(std::uint32_t cell) const { return fours_[cell / 4].at(static_cast<Eigen::Index>(cell % 4)); }
 
   bool any_meets(const Bounds<3>& box) const {
@@ -60,9 +60,9 @@ class CellBoxes {
 
   std::size_t cells_ = 0;
   Eigen::Vector3f longest_way_{0, 0, 0};
-  std::vector<FourBoxes> fours_;              // the last cell again where there are fewer
-  std::vector<FourBoxes> sixteens_;           // a lane around each of fours_; the last again
-  std::vector<Eigen::Array4f> least_, most_;  // of each particle's two places
+  std::vector<FourBoxes> fours_;              // a lane per cell; filled up with the last cell
+  std::vector<FourBoxes> sixteens_;           // a lane per element of fours_; likewise
+  std::vector<Eigen::Array4f> least_, most_;  // of each particle: componentwise, of its begin and end
 };
 
 }  // namespace softcell::ppu

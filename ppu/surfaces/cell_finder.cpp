@@ -18,7 +18,7 @@ using Eigen::Vector3i;
 constexpr float kCubeInCells = 1.5f;
 constexpr int kMostCubesPerAxis = 64;  // of a body that is stretched far: cubes grow
 
-/// Room for twice as much, if there is not enough: a body that turns does not allocate again and again.
+/// Makes room for twice as much if there is not enough, so that a rotating body does not allocate again and again.
 template <typename T>
 void make_room(std::vector<T>& list, std::size_t count) {
   if (count > list.capacity()) list.reserve(2 * count);
@@ -75,11 +75,11 @@ void CellFinder::place(const Lattice<3>& lattice, std::span<const Vector3f> posi
     for_each_cube(boxes_[c], [&](std::size_t i) { cells_[next_[i]++] = c; });
 }
 
-/// By Newton's iteration from the middle of the cell.
+/// Finds the place by Newton's iteration from the middle of the cell.
 std::optional<DeformedPlace> CellFinder::place_in(std::uint32_t cell, const Vector3f& point) const {
   constexpr int kIterations = 4;
   constexpr float kTolerance = 1e-3f;
-  constexpr float kHopeless = 1.25f;  // so far from the middle after one step it is not in this cell
+  constexpr float kHopeless = 1.25f;  // a point this far from the middle after one step is not in the cell
   std::array<Vector3f, 8> x;
   for (std::size_t k = 0; k < 8; ++k) x[k] = positions_[lattice_->corners[cell][k]];
 

@@ -1,5 +1,5 @@
 #pragma once
-// In which cell of a deformed lattice a point lies.
+// Finds the cell of a deformed lattice in which a point lies.
 
 #include <Eigen/Core>
 #include <cstdint>
@@ -17,14 +17,13 @@ struct DeformedPlace {
   Eigen::Matrix3f jacobian = Eigen::Matrix3f::Identity();  ///< dx/dxi there, metres
 };
 
-/// The cells of one lattice in a grid of cubes. Allocates only when a body grows.
+/// Sorts the cells of one lattice into a grid of cubes. Allocates only when a body grows.
 class CellFinder {
  public:
-  /// @param positions  of the lattice's particles, metres; must stay where they are while find() is used
+  /// @param positions  of the lattice's particles, metres; must stay in place while find() is used
   void place(const Lattice<3>& lattice, std::span<const Eigen::Vector3f> positions);
 
-  /// The first cell that holds the point, of those that `wanted` accepts by their numbers. Cells turned inside
-  /// out hold nothing.
+  /// The first cell that contains the point, of those whose numbers `wanted` accepts. Inverted cells contain no point.
   template <typename Wanted>
   std::optional<DeformedPlace> find(const Eigen::Vector3f& point, const Wanted& wanted) const {
     std::optional<DeformedPlace> found;
@@ -35,7 +34,7 @@ class CellFinder {
     return found;
   }
 
-  /// Whether the box of any cell holds the point: if not, no cell does.
+  /// Whether the point lies in the box of any cell. If not, no cell contains it.
   bool may_find(const Eigen::Vector3f& point) const {
     bool is_in_box = false;
     for_each_box_around(point, [&](std::uint32_t) { return is_in_box = true; });
@@ -47,7 +46,7 @@ class CellFinder {
     Eigen::Vector3f low, high;
   };
 
-  /// Calls work(cell) for cells whose boxes hold the point, ascending, until it returns true.
+  /// Calls work(cell) for cells whose boxes contain the point, ascending, until it returns true.
   template <typename Work>
   void for_each_box_around(const Eigen::Vector3f& point, const Work& work) const {
     const Eigen::Vector3f place = (point - low_) * per_cube_;
@@ -68,7 +67,7 @@ class CellFinder {
   Eigen::Vector3f low_{0, 0, 0};
   float per_cube_ = 1;
   Eigen::Vector3i counts_{0, 0, 0};
-  std::vector<Eigen::Array4f> rows_;  // of each particle: where it is
+  std::vector<Eigen::Array4f> rows_;  // of each particle: its position
   std::vector<Box> boxes_;            // of each cell
   std::vector<std::uint32_t> begin_;  // of each cube
   std::vector<std::uint32_t> cells_, next_;

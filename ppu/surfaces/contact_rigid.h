@@ -8,8 +8,8 @@
 
 namespace softcell::ppu {
 
-/// What impulses change of a rigid body that is not free: it lies on something or is joined to it, which takes a part of them. A symmetric
-/// matrix of 6 x 6.
+/// How impulses change the velocity of a rigid body that is not free: it lies on another body or is joined to one, which takes up a part of
+/// each impulse. A symmetric matrix of 6 x 6.
 struct HeldMobility {
   Eigen::Matrix3f linear;    ///< 1/kg: of velocity, by an impulse
   Eigen::Matrix3f coupling;  ///< 1/(kg m): of velocity, by a moment; transposed: of spin, by an impulse
@@ -36,7 +36,7 @@ struct ContactRigid {
   struct Change {
     Eigen::Vector3f velocity, spin;
   };
-  /// 1/kg, at a point in a direction.
+  /// Effective inverse mass at a point in a direction, 1/kg.
   float mobility(const Eigen::Vector3f& point, const Eigen::Vector3f& direction) const {
     if (inverse_mass == 0) return 0;
     const Eigen::Vector3f arm = point - centre;
@@ -45,7 +45,7 @@ struct ContactRigid {
     const Change change = change_by(direction, turn);
     return direction.dot(change.velocity) + turn.dot(change.spin);
   }
-  /// By an impulse, kg m/s, and a moment about its centre, kg m^2/s.
+  /// The change by an impulse, kg m/s, and a moment about the centre, kg m^2/s.
   Change change_by(const Eigen::Vector3f& impulse, const Eigen::Vector3f& moment) const {
     if (!held) return {inverse_mass * impulse, inverse_inertia * moment};
     return {held->linear * impulse + held->coupling * moment,

@@ -23,7 +23,7 @@ using Eigen::Vector3f;
 using Eigen::Vector3i;
 
 // All in cells.
-constexpr float kCandidateSpacing = 0.2f;  // of what points are chosen from
+constexpr float kCandidateSpacing = 0.2f;  // between the candidates that points are chosen from
 
 float volume_of(const TriangleMesh& mesh) {
   float volume = 0;
@@ -72,7 +72,7 @@ ContactSurface::ContactSurface(const TriangleMesh& mesh, const Lattice<3>& latti
   measure(surface, lattice, outside ? &solid : nullptr);
 }
 
-/// Vertices come first: those of sharp corners and edges must not give way to what lies beside them.
+/// Offers vertices first: those of sharp corners and edges must not give way to points beside them.
 void ContactSurface::sample(const TriangleMesh& mesh, const Lattice<3>& lattice) {
   PointChooser chooser(lattice.spacing);
   const auto offer = [&](const Vector3f& point, const Vector3f& normal) {
@@ -103,14 +103,14 @@ void ContactSurface::sample(const TriangleMesh& mesh, const Lattice<3>& lattice)
                    [](const auto& a, const auto& b) { return a.cell < b.cell; });
 }
 
-/// @param solid  says what is inside; null: the nearest triangle does
+/// @param solid  tells what is inside; null: the nearest triangle decides
 void ContactSurface::measure(const TriangleMesh& mesh, const Lattice<3>& lattice, const Solid* solid) {
   const TriangleGrid triangles(mesh, lattice.spacing);
-  const float outwards = volume_of(mesh) < 0 ? -1.0f : 1.0f;  // of a mesh turned inside out
-  constexpr int kPerCell = kNodesPerEdge - 1;                 // nodes from cell to cell
+  const float outwards = volume_of(mesh) < 0 ? -1.0f : 1.0f;  // -1 for a mesh turned inside out
+  constexpr int kPerCell = kNodesPerEdge - 1;                 // nodes from one cell to the next
   constexpr float kStep = 1.0f / kPerCell;
 
-  // Each node once, in the order of cells.
+  // Measures each node once, in the order of cells.
   std::unordered_map<std::uint64_t, float> distances;
   std::vector<Vector3i> unknown;
   const auto for_each_node = [&](std::size_t cell, const auto& work) {
@@ -136,7 +136,7 @@ void ContactSurface::measure(const TriangleMesh& mesh, const Lattice<3>& lattice
         unknown.push_back(node);
     });
   }
-  // Farther in than exact distances reach: in steps from node to node, layer by layer.
+  // Deeper inside than exact distances reach: counts steps from node to node, layer by layer.
   while (!unknown.empty()) {
     std::vector<Vector3i> later;
     std::vector<std::pair<std::uint64_t, float>> found;

@@ -1,8 +1,8 @@
 #pragma once
-// What touches of a soft body: points of the drawn surface, and the distance field of its shape at rest.
+// The parts of a soft body that collide: points of the drawn surface, and the distance field of its shape at rest.
 //
-// The points are looked up in the shapes of others; corners and edges of others, and the points of other soft
-// bodies, are looked up in the field, through the inverse of the deformed cell that holds them.
+// Contact detection looks up the points in the shapes of others. It looks up corners and edges of others, and the points of other soft
+// bodies, in the field, through the inverse of the deformed cell that holds them.
 // @source  [FL01] for deformed distance fields, [MZS+11] for contact of an embedded surface.
 
 #include <Eigen/Core>
@@ -28,28 +28,28 @@ struct SurfacePointAtRest {
   Eigen::Vector3f rest{0, 0, 0};  ///< metres, as Lattice::rest_position()
 };
 
-/// A particle, which touches when the surface around it does not keep things out: those outside of the surface
-/// lag behind it, and those inside may be all that is left between the two sides of a crushed body.
+/// A particle that collides where the surface around it does not keep others out: particles outside of the surface lag behind it, and
+/// particles inside may be all that is left between the two sides of a crushed body.
 struct TouchingParticle {
   std::uint32_t particle = 0;
-  /// Cells: how deep in others it may be, because it lies outside of the surface at rest.
+  /// How deep in others the particle may be, in cells, because it lies outside of the surface at rest.
   float allowance = 0;
 };
 
 /// A signed distance and the direction in which it grows fastest.
 struct FieldValue {
   float distance = 0;                 ///< below 0 inside, in cells
-  Eigen::Vector3f gradient{0, 0, 0};  ///< by xi
+  Eigen::Vector3f gradient{0, 0, 0};  ///< derivative by xi
 };
 
-/// Of a model. Immutable.
+/// The contact surface of a model. Immutable.
 class ContactSurface {
  public:
-  /// A field has 3 x 3 x 3 nodes in each cell, those of a face in both of its cells.
+  /// A field has 3 x 3 x 3 nodes in each cell; two neighbouring cells both store the nodes of their common face.
   static constexpr int kNodesPerEdge = 3;
   static constexpr std::size_t kNodes = 27;
   using CellField = std::array<float, kNodes>;
-  /// Of exact distances, in cells; deeper inside they are counted in steps.
+  /// The field is exact up to this distance, in cells; deeper inside, distances are counted in steps from node to node.
   static constexpr float kReach = 2;
   /// The node of a cell at its corner k = bx + 2 by + 4 bz.
   static constexpr std::size_t node_of_corner(std::size_t k) {
@@ -64,20 +64,21 @@ class ContactSurface {
            static_cast<float>(kNodesPerEdge - 1);
   }
 
-  /// What of the mesh lies within other parts of it does not count.
-  /// @param mesh  closed, or nearly so; none: the lattice's own boundary
+  /// Parts of the mesh that lie within other parts of it do not count.
+  /// @param mesh  closed, or nearly so; if it has no triangles, the lattice's own boundary is used
   ContactSurface(const TriangleMesh& mesh, const Lattice<3>& lattice);
-  /// Of a piece of a body with a mesh: what it is in the whole, but where the piece is open. In proportion to the piece (piece_surface.cpp).
+  /// The surface of a piece of a body with a mesh: the same as in the whole, except where the piece is open. Takes time in proportion to
+  /// the piece (piece_surface.cpp).
   /// @param mesh    of the piece   @param cracks  of the piece
   ContactSurface(const ContactSurface& whole, const Lattice<3>& piece, const TriangleMesh& mesh,
                  const Cracks<3>& cracks);
-  /// As somebody else has found it; no particle touches by itself.
+  /// Takes points and fields that the caller has computed; no particle collides by itself.
   /// @param points  ascending by cell   @param fields  of each cell, as nodes()
   ContactSurface(std::vector<SurfacePointAtRest> points, std::vector<CellField> fields)
       : points_(std::move(points)), fields_(std::move(fields)) {}
 
-  /// Ascending by cell. Nearer to each other than half a cell where the surface is flat, and the nearer the more it bends; at each corner and
-  /// along each sharp edge of the mesh.
+  /// Sorted by cell. Neighbouring points are less than half a cell apart where the surface is flat, and closer where it bends; there are
+  /// points at each corner and along each sharp edge of the mesh.
   std::span<const SurfacePointAtRest> points() const { return points_; }
   /// All particles, or none.
   std::span<const TouchingParticle> particles() const { return particles_; }

@@ -1,5 +1,5 @@
 #pragma once
-// Corners of triangles, each once, and which of them stand out of nothing.
+// Collects the corners of triangles, each once, and tells which of them lie flat within a surface.
 
 #include <Eigen/Core>
 #include <array>
@@ -23,17 +23,17 @@ class CornerSet {
    public:
     Point point{};
 
-    /// Whether triangles surround this corner, in any order, and bend by no more than are_nearly_parallel() says.
+    /// Whether triangles surround this corner completely, added in any order, and bend by no more than are_nearly_parallel() allows.
     bool is_flat() const { return !stands_out_ && around_ == 0; }
 
    private:
     friend CornerSet;
-    Eigen::Vector3f normal_;    // of the first triangle; its length is of no interest
-    std::uint64_t around_ = 0;  // hashes of next corners less last ones: 0 if each next one is another's last
+    Eigen::Vector3f normal_;    // of the first triangle; its length does not matter
+    std::uint64_t around_ = 0;  // hashes of next corners minus previous ones: 0 if surrounded
     bool stands_out_ = false;
   };
 
-  /// Empties the set. @param most  of corners that will be added, repeated ones included
+  /// Empties the set. @param most  number of corners that will be added, repeated ones included
   void begin(std::size_t most) {
     corners_.clear();
     corners_.reserve(most);
@@ -42,7 +42,7 @@ class CornerSet {
     slots_.assign(slots, kNone);
   }
 
-  /// The corners of a triangle. @pre  no more corners than begin() was told
+  /// Adds the corners of a triangle. @pre  no more corners than begin() announced
   /// @return  their indices in corners()
   std::array<std::uint32_t, 3> add(const Triangle& triangle) {
     const Eigen::Vector3f normal = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]);
@@ -59,13 +59,13 @@ class CornerSet {
     return indices;
   }
 
-  /// A corner of which nothing else is known: it is not flat. @pre  as above
+  /// Adds a corner of which nothing else is known, so it is not flat. @pre  as above
   void add(const Eigen::Vector3f& point) {
     const Point added = exact_point(point);
     at(added, hash_of(added), {0, 0, 0}).stands_out_ = true;
   }
 
-  /// In the order in which they were added first.
+  /// In the order in which they were first added.
   std::span<const Corner> corners() const { return corners_; }
 
  private:

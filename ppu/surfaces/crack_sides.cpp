@@ -9,7 +9,7 @@
 namespace softcell::ppu {
 namespace {
 
-/// Whether a particle at the face has become two.
+/// Whether a particle of the face has been split in two.
 template <int kDimension>
 bool is_open(const Lattice<kDimension>& lattice, const CellFace& face) {
   const auto &low = lattice.corners[face.low], &high = lattice.corners[face.high];

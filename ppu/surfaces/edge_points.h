@@ -1,5 +1,5 @@
 #pragma once
-// Points along an edge of an obstacle, in a box.
+// Samples an edge of an obstacle within a box.
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -9,12 +9,12 @@
 
 namespace softcell::ppu {
 
-/// Cells between points along an obstacle's edges.
+/// Distance between samples of an obstacle's edges, in cells.
 inline constexpr float kEdgeSpacing = 0.5f;
 
-/// Calls work(point, share) for points at most `spacing` metres apart on the edge from `from` to `from + along`, those in the box and perhaps
-/// a few beside it; for both ends of an edge that is no longer than that. Points stay where they are on the edge, however the box moves.
-/// `share` is that of the way from `from` to where a point is, 0..1.
+/// Samples the edge from `from` to `from + along` at most every `spacing` metres and calls work(point, share) for the points in the box,
+/// and perhaps for a few beside it. If the edge is no longer than `spacing`, its two ends are the samples. The points do not move along the
+/// edge when the box moves. `share` is the fraction of the way from `from` to the point, 0..1.
 template <typename Work>
 void for_each_point_of_edge(const Eigen::Vector3f& from, const Eigen::Vector3f& along, const Bounds<3>& box,
                             float spacing, const Work& work) {

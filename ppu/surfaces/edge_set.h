@@ -1,9 +1,9 @@
 #pragma once
-// Sides of triangles, and which of them stand out of nothing.
+// Collects the sides of triangles and tells which of them lie flat within a surface.
 //
 //      ______              ______
-//     |    / |            |    / |      the diagonal of a square lies in its plane: nothing can hang on it.
-//     |  /   |            |  / __|__    A side of one triangle, and one of three, stands out.
+//     |    / |            |    / |      the diagonal of a square lies in its plane: nothing can catch on it.
+//     |  /   |            |  / __|__    A side of only one triangle, or of three, stands out.
 //     |/_____|            |/___|___/
 
 #include <Eigen/Core>
@@ -21,13 +21,13 @@ namespace softcell::ppu {
 /// A hash table of sides. Allocates only when there are more of them than ever before.
 class EdgeSet {
  public:
-  /// Empties the set. @param sides  three for each triangle
+  /// Empties the set. @param sides  number of sides: three for each triangle
   void begin(std::size_t sides) {
     found_.clear();
     is_flat_.assign(sides, false);
   }
 
-  /// The sides 3 t, 3 t + 1, 3 t + 2 of triangle t: from corner 0 to 1, to 2, to 0. @pre  begin() was told of them
+  /// Adds the sides 3 t, 3 t + 1, 3 t + 2 of triangle t: from corner 0 to 1, to 2, to 0. @pre  begin() has counted them
   void add(std::size_t t, const std::array<Eigen::Vector3f, 3>& triangle) {
     if (found_.empty()) make_slots();
     const Eigen::Vector3f normal = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]);
@@ -36,7 +36,7 @@ class EdgeSet {
                exact_point(triangle[(i + 1) % 3]), normal);
   }
 
-  /// Whether a side is one of two triangles, wound alike, whose planes are_nearly_parallel().
+  /// Whether a side belongs to exactly two triangles, wound alike, whose planes are_nearly_parallel().
   bool is_flat(std::size_t side) const { return is_flat_[side]; }
 
  private:
@@ -45,10 +45,10 @@ class EdgeSet {
     ExactPoint low, high;
     Eigen::Vector3f normal;  // of the first triangle
     std::uint32_t first, second;
-    bool runs_up;  // the first triangle's side, from low to high
+    bool runs_up;  // the first triangle's side runs from low to high
   };
 
-  /// When the first triangle comes: often none does.
+  /// Called when the first triangle is added, since often there is none.
   void make_slots() {
     found_.reserve(is_flat_.size());
     const std::size_t slots = std::bit_ceil(2 * is_flat_.size() + 1);

@@ -27,7 +27,7 @@ Skin2d touching_skin(const SoftBodyModel<2>& model) {
                       std::min(model.contact_radius() / model.lattice().spacing, kMaxSkinMargin));
 }
 
-/// Builds the layer: the body's cells first, so that what lies in them and in a margin cell is in them.
+/// Builds the layer. The body's cells come first, so that a place both in one of them and in a margin cell is found in the body's cell.
 class FlatLayer::Maker {
  public:
   Maker(const SoftBodyModel<2>& model, const Skin2d& skin)
@@ -84,7 +84,7 @@ class FlatLayer::Maker {
       corners[k] = 2 * columns[k & 3u] + static_cast<std::uint32_t>(k >> 2);
   }
 
-  /// The same all through the layer.
+  /// Distances are the same all through the layer.
   ContactSurface::CellField field_of(const Vector2i& cell) const {
     constexpr int kNodes = ContactSurface::kNodesPerEdge;
     ContactSurface::CellField field{};
@@ -99,7 +99,8 @@ class FlatLayer::Maker {
     return field;
   }
 
-  /// Beside the body's cells, where its shape reaches. A margin cell hangs on the cell that shares an edge with it, or a corner.
+  /// Adds cells beside the body's cells where its shape reaches. A margin cell moves with the cell that shares an edge with it, or else a
+  /// corner.
   void add_margin_cells() {
     constexpr std::array<std::array<int, 2>, 8> kAround{
         {{-1, 0}, {1, 0}, {0, -1}, {0, 1}, {-1, -1}, {1, -1}, {-1, 1}, {1, 1}}};
@@ -131,7 +132,7 @@ class FlatLayer::Maker {
     return {static_cast<float>(v.x()), static_cast<float>(v.y()), 0};
   }
 
-  /// Of a margin cell: a particle of the body where there is one, else a place beyond the cell beside.
+  /// A corner of a margin cell: a particle of the body where there is one, else a place beyond the cell beside.
   std::uint32_t column_of(const Vector2i& at, std::uint32_t beside) {
     const Vector2i off = at - flat_.cells[beside];
     if ((off.array() >= 0).all() && (off.array() <= 1).all())
@@ -150,7 +151,7 @@ class FlatLayer::Maker {
     return static_cast<std::uint32_t>(flat_.particles.size() + entry->second);
   }
 
-  /// Along the outlines, and each particle: it may be all that is left between two sides of a crushed body.
+  /// Places points along the outlines and at each particle: particles may be all that is left between two sides of a crushed body.
   void place_points() {
     PointChooser chooser(1);
     for (const auto& loop : skin_.outlines)
@@ -172,7 +173,7 @@ class FlatLayer::Maker {
     std::ranges::stable_sort(points, {}, &SurfacePointAtRest::cell);
   }
 
-  /// Which cell of the layer a place of the surface is in. @param near  the body's cell that is nearest
+  /// The cell of the layer that a place of the surface is in. @param near  the body's nearest cell
   std::uint32_t cell_of(const Vector2f& at, std::uint32_t near) const {
     constexpr float kTolerance = 1e-4f;
     const Vector2f in = at - flat_.cells[near].cast<float>();
@@ -193,12 +194,12 @@ class FlatLayer::Maker {
     point.rest = {rest.x(), rest.y(), 0};
   }
 
-  /// What a place beyond the body's cells hangs on.
+  /// A cell that a place beyond the body's cells moves with, and the place as a mix of this cell's corners.
   struct Hanging {
     std::uint32_t cell;
     CellPoint2d place;
   };
-  /// Every place of a cell is nearer than this to one of its nodes: in cells.
+  /// Every place of a cell is nearer than this, in cells, to one of the cell's nodes.
   static constexpr float kNothingThere = 0.36f;
 
   const SoftBodyModel<2>& model_;
@@ -206,7 +207,7 @@ class FlatLayer::Maker {
   const Skin2d& skin_;
   OutlineDistance outline_;
   std::map<Vector2i, std::uint32_t, GridOrder> margin_at_;
-  std::map<Vector2i, std::size_t, GridOrder> beyond_at_;  // numbers of `columns_`
+  std::map<Vector2i, std::size_t, GridOrder> beyond_at_;  // index into `columns_`
   std::vector<std::vector<Hanging>> columns_;
 };
 

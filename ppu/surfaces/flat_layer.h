@@ -1,15 +1,15 @@
 #pragma once
-// A body of two dimensions as contacts in three see it: a layer of cells around z = 0, one cell thick.
+// Presents a body of two dimensions to contacts in three, as a layer of cells around z = 0, one cell thick.
 //
-//                        o  a particle: two of the layer, one half a cell above it and one below
+//                        o  a particle: two in the layer, one half a cell above it and one below
 //     . . . . . . .      .  the drawn edge, half a cell outside of the cells: margin cells (m) hold it, which move with the
 //     . o-----o   .         cells beside them
 //     m |  c  | m .      c  a cell of the body
 //     . o-----o   .
 //     . . . . . . .
 //
-// Nothing leads out of the plane: what touches lies at z = 0, and distances are the same all through the layer. So
-// impulses are the same above and below, and what kernels solve is the contact in two dimensions.
+// Nothing leads out of the plane: all contacts lie at z = 0, and distances are the same all through the layer. So impulses are the same
+// above and below, and the kernels in fact solve the contact in two dimensions.
 
 #include <Eigen/Core>
 #include <cstdint>
@@ -23,36 +23,37 @@
 
 namespace softcell::ppu {
 
-/// What touches of bodies of a model, if their user has not said how they are drawn: make_skin_2d() with the model's contact radius. A piece
-/// has its part of the whole.
+/// The outline with which bodies of a model collide if their user has not said how they are drawn: make_skin_2d() with the model's contact
+/// radius. A piece has its part of the whole.
 Skin2d touching_skin(const SoftBodyModel<2>& model);
 
-/// A cell beside a body into which its drawn edge reaches: it moves with the body's cell beside it.
+/// A cell beside a body into which the body's drawn edge reaches. It moves with the body's cell beside it.
 struct MarginCell {
-  std::uint32_t beside = 0;      ///< the body's cell; of one of the body's own cells: itself
+  std::uint32_t beside = 0;      ///< the body's cell; for one of the body's own cells: itself
   Eigen::Vector3f off{0, 0, 0};  ///< from that cell to this one, in cells
 };
 
-/// Of a model in two dimensions. Immutable.
+/// The layer of a model in two dimensions. Immutable.
 class FlatLayer {
  public:
-  /// @param skin  how bodies of the model are drawn, with outlines: what touches
+  /// @param skin  how bodies of the model are drawn, with outlines: these collide
   FlatLayer(const SoftBodyModel<2>& model, const Skin2d& skin);
 
-  /// The body's cells first, then margin cells. Of particle i in the plane: 2 i below it, 2 i + 1 above. `fill` and `neighbours` are empty.
+  /// The body's cells come first, then margin cells. Particle i of the plane becomes particles 2 i below it and 2 i + 1 above. `fill` and
+  /// `neighbours` are empty.
   const std::shared_ptr<const Lattice<3>>& lattice() const { return lattice_; }
   const ContactSurface& surface() const { return surface_; }
-  /// kg, of each particle; 0 of those that margin cells alone have.
+  /// kg, of each particle; 0 for particles that only margin cells have.
   std::span<const float> masses() const { return masses_; }
   std::span<const MarginCell> margin_cells() const { return margin_cells_; }  ///< of each cell
   std::size_t own_cells() const;  ///< how many of the cells are the body's: the first ones
-  /// As crack_sides(); of margin cells 0.
+  /// As crack_sides(); 0 for margin cells.
   std::span<const std::uint32_t> crack_sides() const { return crack_sides_; }
 
-  /// Places or velocities in the plane as those of all particles of the layer; places also lie `half` a cell above and below.
-  /// @param flat  of each particle  @param half  metres; 0 for velocities
+  /// Copies places or velocities in the plane to all particles of the layer; places get z = -half and z = +half.
+  /// @param flat  of each particle in the plane  @param half  half a cell, metres; 0 for velocities
   void lift(std::span<const Eigen::Vector2f> flat, float half, std::vector<Eigen::Vector3f>& lifted) const;
-  /// What a velocity of the layer is in the plane. @param particle  in the plane
+  /// The velocity in the plane that corresponds to velocities of the layer. @param particle  in the plane
   static Eigen::Vector2f lower(std::span<const Eigen::Vector3f> lifted, std::size_t particle) {
     return 0.5f * (lifted[2 * particle] + lifted[2 * particle + 1]).head<2>();
   }
@@ -66,7 +67,7 @@ class FlatLayer {
   std::vector<float> masses_;
   std::vector<MarginCell> margin_cells_;
   std::vector<std::uint32_t> crack_sides_;
-  /// Of each place that margin cells alone have: the mean of these.
+  /// For each place that only margin cells have: it is the mean of these points.
   std::vector<CellPoint2d> beyond_;
   std::vector<std::uint32_t> first_beyond_{0};
 };

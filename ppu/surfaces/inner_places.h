@@ -1,5 +1,5 @@
 #pragma once
-// Places well inside of a body: they tell on which side of something thin a body is whose surface has been pressed through it.
+// Finds places well inside of a body. They tell on which side of a thin obstacle a body is when its surface has been pressed through it.
 
 #include <Eigen/Core>
 #include <cstdint>
@@ -19,12 +19,12 @@ struct CellPlace {
   Eigen::Vector3f xi{0, 0, 0};  ///< 0..1 along each edge of the cell
 };
 
-/// Of each cell the deepest of the field's nodes in it and in the cells beside it.
+/// For each cell: the deepest of the field's nodes in it and in the cells beside it.
 std::vector<CellPlace> find_inner_places(const ContactSurface& surface, const Lattice<3>& lattice);
-/// Of a flat layer: in the body's own cells, and in the plane. What a margin cell has is that of the cell beside which it moves.
+/// The same for a flat layer: only in the body's own cells, and in the plane. A margin cell gets the place of the cell that it moves with.
 std::vector<CellPlace> find_inner_places(const FlatLayer& layer);
 
-/// Which of some cells has a place: in cells, from the lattice's grid index 0. @param cells  ascending, as a lattice has them
+/// The cell, of these, that contains a place given in cells from the lattice's grid index 0. @param cells  ascending, as a lattice has them
 std::optional<std::uint32_t> cell_at(std::span<const Eigen::Vector3i> cells, const Eigen::Vector3f& place);
 
 }  // namespace softcell::ppu

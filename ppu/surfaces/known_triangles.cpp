@@ -13,7 +13,7 @@ using Eigen::Vector3f;
 
 namespace {
 
-/// Both are lists of floats without gaps.
+/// Both lists hold floats without gaps.
 template <typename T>
 bool are_same(const std::vector<T>& known, std::span<const T> now) {
   if (known.size() != now.size()) return false;
@@ -66,7 +66,7 @@ void KnownTriangles::find_corners() {
     if (!corner.is_flat()) corners_.push_back(corner.point);
 }
 
-/// Sides at a flat corner do not.
+/// Sides at a flat corner do not stand out.
 bool KnownTriangles::may_stand_out(std::size_t t, std::size_t side) const {
   const std::array<std::uint32_t, 3>& corners = corners_of_[t];
   return !set_.corners()[corners[side]].is_flat() && !set_.corners()[corners[(side + 1) % 3]].is_flat();
@@ -84,7 +84,7 @@ void KnownTriangles::find_long_edges(const Obstacle& obstacle) {
       if (has_sides() && !may_stand_out(t, i)) continue;
       is_long_[3 * t + i] = has_one = true;
     }
-    // Most triangles of a large mesh have none.
+    // Most triangles of a large mesh have no long side.
     if (has_one && has_sides()) sides_.add(t, triangles_[t]);
   }
   for (std::size_t i = 0; i < is_long_.size(); ++i) {

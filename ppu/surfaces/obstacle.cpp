@@ -12,7 +12,7 @@ namespace {
 using Eigen::Vector2f;
 using Eigen::Vector3f;
 
-/// Inside, the way out through the nearest face; outside, from the nearest point.
+/// Inside the box, the way out leads through the nearest face; outside, away from the nearest point.
 Separation from_box(const Vector3f& half, const Vector3f& p) {
   const Vector3f beyond = p.cwiseAbs() - half;
   Eigen::Index axis;
@@ -27,13 +27,13 @@ Separation from_box(const Vector3f& half, const Vector3f& p) {
   return {distance, away / distance};
 }
 
-/// A convex outline in the half-plane of radius and height, turned about the y axis.
+/// Distance and normal of a convex outline in the half-plane of radius and height, which is turned about the y axis.
 struct Profile {
   float distance;
   Vector2f normal;  // by radius and height
 };
 
-/// Of a polygon of three or four corners, counter-clockwise, of which edges on the axis do not count.
+/// The distance from a polygon of three or four corners, counter-clockwise; its edges on the axis do not count.
 template <std::size_t kCorners>
 Profile from_outline(const std::array<Vector2f, kCorners>& corner, const Vector2f& p) {
   Profile inside{-std::numeric_limits<float>::max(), Vector2f::UnitY()};
@@ -72,8 +72,7 @@ Separation from_cone(float radius, float half, const Vector3f& p) {
   return turned(from_outline(outline, {r, p.y()}), p, r);
 }
 
-/// Outside, near an edge or a corner, this is less than the distance; nothing that has no part inside is ever
-/// found inside.
+/// Outside, near an edge or a corner, the result is less than the distance. A point outside is never taken to be inside.
 Separation from_planes(std::span<const Eigen::Vector4f> planes, const Vector3f& p) {
   Separation nearest{-std::numeric_limits<float>::max(), Vector3f::UnitY()};
   for (const Eigen::Vector4f& plane : planes) {
@@ -104,7 +103,7 @@ Separation from_core(const Obstacle& obstacle, const Vector3f& p) {
 
 }  // namespace
 
-/// By its corners: rounding keeps the order of numbers, and so that of places between them.
+/// Transforms the corners: rounding keeps the order of numbers, so points between the corners stay between them.
 Bounds<3> to_world(const Obstacle& obstacle, const Bounds<3>& box) {
   Bounds<3> result{obstacle.to_world(box.low), obstacle.to_world(box.low)};
   for (unsigned k = 1; k < 8; ++k) {
@@ -139,7 +138,7 @@ Bounds<3> bounds(const Obstacle& obstacle) {
     return {box.low - rounding, box.high + rounding};
   }
   Vector3f half = obstacle.extent;
-  if (obstacle.kind != ObstacleKind::kBox) half.z() = half.x();  // what is turned about its axis
+  if (obstacle.kind != ObstacleKind::kBox) half.z() = half.x();  // shapes that are turned about their axis
   const Vector3f reach = obstacle.rotation.cwiseAbs() * half + rounding;
   return {obstacle.position - reach, obstacle.position + reach};
 }

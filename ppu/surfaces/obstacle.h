@@ -1,5 +1,5 @@
 #pragma once
-// Rigid shapes as plain data: what soft bodies touch.
+// Rigid shapes as plain data: the obstacles that soft bodies collide with.
 //
 // A coupling to an engine describes what is near its soft bodies with these, before each substep. A compound
 // is several of them with one rigid body.
@@ -18,25 +18,25 @@ namespace softcell::ppu {
 
 enum class ObstacleKind : std::uint32_t {
   kPlane,     ///< the half-space y < 0
-  kBox,       ///< half edges `extent`; a sphere is a box of nothing with a rounding, a capsule one of a line
+  kBox,       ///< half edges `extent`; with a rounding, a box of size 0 is a sphere, a line a capsule
   kCylinder,  ///< radius extent.x, half height extent.y, along y
   kCone,      ///< radius of the base extent.x, half height extent.y, the tip at +y
   kHull,      ///< the inside of all `planes`
-  kTriangles  ///< without an inside: both sides keep things out, whichever way they are wound
+  kTriangles  ///< no inside: both sides keep bodies out, whichever way they are wound
 };
 
-/// A point of a shape that is sharper than the surface that it may meet: looked up in that body's field.
+/// An edge or a tip of a shape, sharper than the surface that it may meet: contacts look it up in that body's field.
 struct ObstacleEdge {
   Eigen::Vector3f from, to;  ///< the same for a tip
-  /// Metres, at both ends: what lies so near to the edge is inside. For the axis of something thin.
+  /// Metres, at both ends: everything this near to the edge is inside. For the axis of a thin shape.
   float radius_from = 0, radius_to = 0;
-  /// Metres: a body of cells of this size, or smaller ones, feels what is there with its own points, and does not look it up.
+  /// Metres: a body with cells of this size or smaller feels the edge with its own points and does not look it up.
   float cells_above = 0;
 
   float radius_at(float share) const { return radius_from + share * (radius_to - radius_from); }
 };
 
-/// The lists belong to whoever made the obstacle.
+/// Whoever made the obstacle owns the lists.
 struct Obstacle {
   ObstacleKind kind = ObstacleKind::kPlane;
   std::uint32_t rigid = 0;  ///< index of its ContactRigid
@@ -44,13 +44,13 @@ struct Obstacle {
   Eigen::Vector3f position{0, 0, 0};
   Eigen::Matrix3f rotation = Eigen::Matrix3f::Identity();  ///< from its frame to the world's
   Eigen::Vector3f extent{0, 0, 0};                         ///< metres, by kind
-  float rounding = 0;                            ///< metres: what lies so near to the shape is inside
+  float rounding = 0;                            ///< metres: everything this near to the shape is inside
   std::span<const Eigen::Vector4f> planes = {};  ///< outward unit normal, and its distance from 0
   std::span<const std::array<Eigen::Vector3f, 3>> triangles = {};
   bool faces_bodies = false;  ///< of triangles: known to be wound so that their fronts are towards the bodies
   std::uint32_t part = 0;     ///< which of the rigid body's: the triangles of one are wound alike
   std::span<const ObstacleEdge> edges =
-      {};  ///< of triangles: three for each, in their order; none: their sides
+      {};  ///< for triangles: three for each, in their order; none: their sides
 
   Eigen::Vector3f to_own(const Eigen::Vector3f& world) const {
     return rotation.transpose() * (world - position);
@@ -80,13 +80,13 @@ bool overlap(const Bounds<kDimension>& a, const Bounds<kDimension>& b) {
   return (a.low.array() <= b.high.array()).all() && (b.low.array() <= a.high.array()).all();
 }
 
-/// Around a box in an obstacle's frame, in the world: a point in the one is in the other, however places are rounded.
+/// The box in the world around a box in the obstacle's frame. A point in the one is in the other, however places are rounded.
 Bounds<3> to_world(const Obstacle& obstacle, const Bounds<3>& box);
 
-/// A box around it, in the world; endless around a plane.
+/// A box around the obstacle, in the world; infinite for a plane.
 Bounds<3> bounds(const Obstacle& obstacle);
 
-/// @param point  in the obstacle's frame, as the result. @pre its kind has an inside: it is not kTriangles
+/// @param point  in the obstacle's frame; so is the result. @pre  the obstacle's kind has an inside: it is not kTriangles
 Separation separation(const Obstacle& obstacle, const Eigen::Vector3f& point);
 
 }  // namespace softcell::ppu

@@ -1,11 +1,11 @@
-// The contact surface of a piece of a broken body, from that of the whole.
+// Derives the contact surface of a piece of a broken body from that of the whole.
 //
-// Where a node lies inside of the whole, the nearest point of the piece's surface is that of the whole's, or lies on a face at which the
-// piece is open, whichever is nearer: the ball around the node that touches the whole's surface holds nothing but the solid, so what of an
-// open face lies in it is a cut, and the way to a part of the surface that is gone leads through one. So the distance is the smaller
-// one of two, and no triangle is asked. The distance from a face is an integer's square root, as nodes and faces lie on one grid of half cells.
-// Nodes outside of the solid are measured again where an open face is nearer than the whole's surface. (Where nothing but cells of air lie
-// between a node and a part that is gone its distance stays what it was, which is too small.)
+// For a node inside of the whole, the nearest point of the piece's surface is either the nearest one of the whole's surface or lies on an
+// open face of the piece, whichever is nearer. The reason: the ball around the node that touches the whole's surface holds nothing but
+// solid, so any part of an open face in this ball is a cut, and the way to a part of the surface that is gone leads through a cut. So the
+// distance is the smaller one of the two, and no triangle is looked at. The distance from a face is an integer's square root, as nodes and
+// faces lie on one grid of half cells. Nodes outside of the solid are measured again where an open face is nearer than the whole's surface.
+// (Where only cells of air lie between a node and a part that is gone, the node keeps its distance, which is too small.)
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -33,10 +33,10 @@ namespace {
 using Eigen::Vector3f;
 using Eigen::Vector3i;
 
-constexpr int kNodesPerCell = ContactSurface::kNodesPerEdge - 1;  // from cell to cell
+constexpr int kNodesPerCell = ContactSurface::kNodesPerEdge - 1;  // from one cell to the next
 constexpr int kReachInNodes = static_cast<int>(ContactSurface::kReach) * kNodesPerCell;
 
-/// Its node 0..26 of a cell, x fastest.
+/// A node 0..26 of a cell, x fastest, as steps from the cell's low corner.
 Vector3i step_of(std::size_t node) {
   const auto n = static_cast<int>(node);
   return {n % 3, n / 3 % 3, n / 9};
@@ -58,7 +58,7 @@ void for_each_node_of(const OpenFace& face, const Work& work) {
   }
 }
 
-/// How far nodes are from open faces, in a box: squares of numbers of half cells, exact below kFar.
+/// Distances of the nodes in a box from open faces: squares of numbers of half cells, exact below kFar.
 class SquareField {
  public:
   static constexpr std::uint8_t kFar = kReachInNodes * kReachInNodes;
@@ -68,7 +68,7 @@ class SquareField {
 
   std::uint8_t& at(const Vector3i& node) { return squares_[index_of(node)]; }
 
-  /// From 0 at the faces' nodes to all others, axis by axis: squares along axes add up.
+  /// Spreads distances from the faces' nodes, which have 0, to all others, axis by axis: squares along axes add up.
   void spread() {
     std::size_t stride = 1;
     for (int axis = 0; axis < 3; ++axis) {
@@ -78,13 +78,13 @@ class SquareField {
   }
 
  private:
-  static constexpr std::uint8_t kUnset = 200;  // and three more squares are below 256
+  static constexpr std::uint8_t kUnset = 200;  // with three more squares added it is still below 256
 
   std::size_t index_of(const Vector3i& node) const {
     const Vector3i place = node - low_;
     return static_cast<std::size_t>((place.z() * counts_.y() + place.y()) * counts_.x() + place.x());
   }
-  /// Along an axis of `count` nodes that lie `stride` apart.
+  /// Spreads distances along an axis of `count` nodes that lie `stride` apart.
   void spread(std::size_t stride, std::size_t count) {
     before_ = squares_;
     for (std::size_t first = 0; first < squares_.size(); first += stride * count)
@@ -103,7 +103,7 @@ class SquareField {
   std::vector<std::uint8_t> squares_, before_;
 };
 
-/// The low corner of what is searched around open faces at a time, in cells: memory stays small however large a piece is.
+/// Open faces are handled brick by brick, of so many cells along each axis: memory stays small however large a piece is.
 constexpr int kBrick = 16;
 
 /// A node of a cell that lies outside of the solid, near an open face.
@@ -112,7 +112,7 @@ struct NodeOutside {
   std::size_t node = 0;
 };
 
-/// Changes distances of a piece that are still those of the whole.
+/// Turns the distances of a piece from those of the whole, which it starts with, into its own.
 class FieldCutter {
  public:
   FieldCutter(const Lattice<3>& piece, const Cracks<3>& cracks,
@@ -136,7 +136,7 @@ class FieldCutter {
     deepen();
   }
 
-  /// Each once for each cell that has it.
+  /// Each node once for each cell that has it.
   std::span<const NodeOutside> outside() const { return outside_; }
 
  private:
@@ -191,7 +191,8 @@ class FieldCutter {
         }
   }
 
-  /// Nodes farther from open faces than distances are exact, where these are nearer than the whole's surface: by steps from cell to cell.
+  /// Updates nodes too far from open faces for exact distances where these faces are nearer than the whole's surface. Counts steps from
+  /// cell to cell.
   void deepen() {
     std::vector<std::array<std::uint32_t, 6>> next(piece_.cells.size(),
                                                    {kNone, kNone, kNone, kNone, kNone, kNone});
@@ -227,7 +228,7 @@ class FieldCutter {
     return changes;
   }
 
-  /// At a node of a cell, between its corners.
+  /// The depth at a node of a cell, interpolated between the cell's corners.
   static float depth_at(std::size_t node, const std::array<float, 8>& of_corner) {
     const Vector3i step = step_of(node);
     float sum = 0;
@@ -271,7 +272,7 @@ class NearTriangles {
     if (!near.triangles.empty()) grid_.emplace(near, spacing);
   }
 
-  /// In cells, of either side; at most the reach.
+  /// In cells, positive on both sides; at most the reach.
   float distance(const Vector3f& at) const {
     const float reach = ContactSurface::kReach * spacing_;
     return grid_ ? std::abs(grid_->signed_distance(at, reach)) / spacing_ : ContactSurface::kReach;
@@ -303,7 +304,7 @@ void measure_outside(std::span<const NodeOutside> nodes, const Lattice<3>& piece
   }
 }
 
-/// Points of the cuts that close a piece: nodes of open faces that lie well inside of the solid, and corners of the cuts where the surface
+/// Chooses points on the cuts that close a piece: nodes of open faces well inside of the solid, and corners of the cuts where the surface
 /// meets them.
 class CutSampler {
  public:
@@ -388,7 +389,7 @@ ContactSurface::ContactSurface(const ContactSurface& whole, const Lattice<3>& pi
     measure_outside(cutter.outside(), piece, mesh, fields_);
     std::vector<SurfacePointAtRest> cuts = CutSampler(whole, piece, mesh, cracks, points_).sample();
     const auto known = static_cast<std::ptrdiff_t>(points_.size());
-    points_.insert(points_.end(), cuts.begin(), cuts.end());  // ascending by cell, as the open faces are
+    points_.insert(points_.end(), cuts.begin(), cuts.end());  // sorted by cell, as the open faces are
     std::inplace_merge(points_.begin(), points_.begin() + known, points_.end(), is_before);
   }
   allow_particles(piece);

@@ -1,5 +1,5 @@
 #pragma once
-// Chooses points of a surface that keep their distance from each other.
+// Chooses points of a surface that keep a distance from each other.
 
 #include <Eigen/Core>
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace softcell::ppu {
 
-/// A grid index as one number, for tables.
+/// A grid index as one number, a key for tables.
 inline std::uint64_t key_of(const Eigen::Vector3i& index) {
   constexpr int kOffset = 1 << 20;
   const auto part = [](int i) { return static_cast<std::uint64_t>(i + kOffset); };
@@ -20,13 +20,13 @@ class PointChooser {
   // In cells.
   static constexpr float kPointSpacing = 0.45f;  ///< between points of a smooth surface
   static constexpr float kSamePoint = 0.1f;  ///< nearer than this two points are one, whatever their normals
-  /// How far a point may stand out beyond one that is chosen, where the surface bends: half of what they are apart times the angle
+  /// Where the surface bends: how far a point may stand out beyond one that is already chosen. It is half of their distance times the angle
   /// between their normals.
   static constexpr float kBulge = 0.06f;
 
   explicit PointChooser(float spacing) : spacing_(spacing) {}
 
-  /// @param normal  of unit length; null: of no surface that others belong to
+  /// @param normal  of unit length; zero: the point belongs to no surface that others belong to
   /// @return  whether the point is far enough from all that were chosen before
   bool choose(const Eigen::Vector3f& point, const Eigen::Vector3f& normal) {
     const Eigen::Vector3i cube = (point / (kPointSpacing * spacing_)).array().floor().cast<int>();

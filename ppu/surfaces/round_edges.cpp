@@ -14,14 +14,14 @@ namespace {
 using Eigen::Vector3f;
 using Eigen::Vector4f;
 
-// In cells. Points of a body may be a bit farther apart than PointChooser wants them, as not each place can have one.
+// In cells. Points of a body may be somewhat farther apart than PointChooser wants them, as not every place can have one.
 constexpr float kApart = 0.7f;
 constexpr float kBulge = 0.06f;
-/// Of a radius, which bulges by kApart^2 / (8 radius): rounded.
+/// As a multiple of a radius, rounded: between two points a radius bulges by kApart^2 / (8 radius).
 constexpr float kCellsOfRadius = 1;
 
-/// The largest cells of which half of kApart beside a place of an edge, on either side, the hull is lower than there by no more than
-/// kBulge. Each face says how low it is at least, in proportion to the cells: there is no need to search.
+/// The largest cells for which the hull, half of kApart to either side of a place of an edge, lies no more than kBulge lower than there.
+/// Each face gives a lower bound of that depth in proportion to the cells, so there is no need to search.
 /// @param at     on the edge                       @param out    outwards, of unit length
 /// @param aside  at a right angle to both, of unit length
 float cells_that_feel(std::span<const Vector4f> planes, const Vector3f& at, const Vector3f& out,
@@ -91,7 +91,7 @@ void add_edge_of_hull(const ObstacleEdge& edge, std::span<const Vector4f> planes
 
 void add_edges_of_hull(std::span<const ObstacleEdge> of_hull, std::span<const Vector4f> planes,
                        std::vector<ObstacleEdge>& edges) {
-  constexpr std::size_t kMost = 60'000;  // edges times faces: a millisecond or so, in which a frame waits
+  constexpr std::size_t kMost = 60'000;  // edges times faces: they take about a millisecond
   if (of_hull.size() * planes.size() > kMost) {
     edges.insert(edges.end(), of_hull.begin(), of_hull.end());
     return;
@@ -112,7 +112,7 @@ void add_axis_of_cone(float radius, float half_height, std::vector<ObstacleEdge>
             half_height);
   constexpr int kParts = 6;
   const float height = 2 * half_height;
-  // Of a ball that touches the side: its radius, as a share of how far its middle is below the tip.
+  // The radius of a ball that touches the side, as a share of how far its middle is below the tip.
   const float share = radius / std::sqrt(radius * radius + height * height);
   const auto place = [&](float below) { return Vector3f(0, half_height - below, 0); };
   float below = height / (1 + share);  // the ball there touches the base, too

@@ -1,9 +1,9 @@
 #pragma once
-// What is round has no edges, and yet nothing else keeps it out of a body where it is thin.
+// Gives round shapes and blunt hulls the edges that a body needs to feel them where they are thin.
 //
-// A body feels an obstacle with points of its own surface, some 0.45 cells apart. What bulges between two of them by no more than a small
-// part of a cell needs nothing else. Of smaller radius, a cylinder would pass between the points: its axis is looked up in the body, as a
-// capsule's is. A polyhedron that stands for something round has edges that are none to a body of small cells.
+// A body feels an obstacle with points of its own surface, some 0.45 cells apart. An obstacle that bulges between two of them by no more
+// than a small part of a cell needs nothing else. A cylinder of smaller radius would pass between the points, so its axis is looked up in
+// the body's field, as a capsule's is. A polyhedron that stands for a round shape has edges that a body of small cells need not look up.
 
 #include <Eigen/Core>
 #include <span>
@@ -13,20 +13,20 @@
 
 namespace softcell::ppu {
 
-/// The largest cells, metres, of a body that feels an edge of a hull with points of its own.
+/// The largest cells, metres, with which a body still feels an edge of a hull by points of its own.
 /// @param edge    of the hull  @param planes  of its faces: outward unit normal, and distance from 0, metres
-/// @return  0: the edge is sharp
+/// @return  0 if the edge is sharp
 float cells_that_feel(const ObstacleEdge& edge, std::span<const Eigen::Vector4f> planes);
 
-/// Appends the edges of a hull, with the cells that feel them. One that gets sharper towards an end, as those of a cone do, in parts.
-/// Of more than some 100 corners, where it would take too long, edges are appended as they are.
+/// Appends the edges of a hull, each with the cells that feel it. An edge that gets sharper towards an end, as those of a cone do, is
+/// appended in parts. Edges of a hull of more than some 100 corners are appended as they are, as the search would take too long.
 void add_edges_of_hull(std::span<const ObstacleEdge> of_hull, std::span<const Eigen::Vector4f> planes,
                        std::vector<ObstacleEdge>& edges);
 
-/// Appends a cylinder's axis, so far as balls about it lie within. The cylinder is along y. Metres.
+/// Appends a cylinder's axis, as far as balls around it lie within the cylinder. The cylinder is along y. Metres.
 void add_axis_of_cylinder(float radius, float half_height, std::vector<ObstacleEdge>& edges);
 
-/// Appends a cone's axis, its tip included, in parts that get thinner towards the tip. The cone is along y, its tip at + y. Metres.
+/// Appends a cone's axis, its tip included, in parts that get thinner towards the tip. The cone is along y, its tip at +y. Metres.
 void add_axis_of_cone(float radius, float half_height, std::vector<ObstacleEdge>& edges);
 
 }  // namespace softcell::ppu

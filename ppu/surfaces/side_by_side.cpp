@@ -11,13 +11,13 @@ namespace {
 using Eigen::Vector3f;
 using Eigen::Vector4f;
 
-// Of the spacing:
-constexpr float kInside = 0.02f;   // to where the faces at an edge are looked at, and what is behind a face
-constexpr float kGoesOn = 0.25f;   // so far beyond an edge there has to be something
-constexpr float kLevel = 0.0025f;  // as high as a face
-constexpr float kDeepest = 0.25f;  // another way out is no longer
+// As shares of the spacing:
+constexpr float kInside = 0.02f;   // distance of the tested places from an edge or a face
+constexpr float kGoesOn = 0.25f;   // a face goes on if there is something this far beyond its edge
+constexpr float kLevel = 0.0025f;  // up to this height something is level with a face
+constexpr float kDeepest = 0.25f;  // the longest way out through another face
 
-/// An eighth of a turn, and halves of it.
+/// Cosines and sines of an eighth and of a sixteenth of a turn.
 constexpr float kEighth = 0.70710678f, kCos = 0.92387953f, kSin = 0.38268343f;
 constexpr std::array<std::array<float, 2>, 16> kDirections{{{1, 0},
                                                             {kCos, kSin},
@@ -40,7 +40,7 @@ float distance_to(const Obstacle& obstacle, const Vector3f& world) {
   return separation(obstacle, obstacle.to_own(world)).distance;
 }
 
-/// Calls work(plane) for the outward normal and the distance from 0 of each face.
+/// Calls work(plane) for each face, with its outward normal and its distance from 0.
 template <typename Work>
 void for_each_plane(const Obstacle& obstacle, const Work& work) {
   if (obstacle.kind == ObstacleKind::kHull)
@@ -67,7 +67,7 @@ void Beside::begin(std::span<const Obstacle> obstacles, std::span<const std::uin
   has_looked_ = false;
 }
 
-/// Most obstacles have none.
+/// Looks for the shapes beside it when first asked: most obstacles have none.
 bool Beside::none() {
   SC_ASSERT(own_ != nullptr && own_->kind != ObstacleKind::kTriangles && own_->rounding == 0,
             "what is beside an obstacle of kind {}", own_ == nullptr ? -1 : static_cast<int>(own_->kind));
@@ -99,7 +99,7 @@ bool Beside::face_goes_on(const Vector3f& point, const Vector3f& along) {
   if (none()) return false;
   SC_ASSERT(!along.isZero(0), "an edge without a direction at {} {} {}", point.x(), point.y(), point.z());
   const Vector3f axis = along.normalized(), u = axis.unitOrthogonal(), v = axis.cross(u);
-  // Before and behind the point, as the edge may end there.
+  // Looks on both sides of the point along the edge, as the edge may end there.
   for (const float side : {1.0f, -1.0f}) {
     Vector3f last_normal = Vector3f::Zero();
     for (const auto& [cosine, sine] : kDirections) {

@@ -23,20 +23,20 @@ namespace {
 using Eigen::Vector2f;
 using Eigen::Vector3f;
 
-/// Of a surface: an edge of an outline, or a triangle.
+/// A face of a surface: an edge of an outline, or a triangle.
 template <int kDimension>
 using FaceOf = std::array<Eigen::Vector<float, kDimension>, kDimension>;
 
 constexpr std::uint32_t kFacesInLeaf = 4;
 constexpr float kEndless = std::numeric_limits<float>::max();
-constexpr float kRounding = 1e-5f;  // a ray at a border meets one of its two faces at least
+constexpr float kRounding = 1e-5f;  // a ray at a border meets at least one of its two faces
 
 template <int kDimension>
 float square_of_distance(const Bounds<kDimension>& box, const Eigen::Vector<float, kDimension>& point) {
   return (point - point.cwiseMax(box.low).cwiseMin(box.high)).squaredNorm();
 }
 
-/// Where a way enters a box, as a share of it; beyond 1: nowhere.
+/// The fraction of a segment at which it enters a box; beyond 1: it does not.
 template <int kDimension>
 float entry_of(const Bounds<kDimension>& box, const Eigen::Vector<float, kDimension>& from,
                const Eigen::Vector<float, kDimension>& along) {
@@ -44,7 +44,7 @@ float entry_of(const Bounds<kDimension>& box, const Eigen::Vector<float, kDimens
   return is_any(part) ? part.first : kEndless;
 }
 
-/// Out of the body, as long as the face is large, if outlines go around it counter-clockwise.
+/// Points out of the body, if outlines go around it counter-clockwise. Its length is in proportion to the face.
 Vector2f normal_of(const FaceOf<2>& edge) {
   const Vector2f along = edge[1] - edge[0];
   return {along.y(), -along.x()};
@@ -53,10 +53,11 @@ Vector3f normal_of(const FaceOf<3>& triangle) {
   return (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]);
 }
 
-/// So narrow that which way it looks is rounding, as cuts through bodies leave some. What is beside it has the surface's places, too.
+/// Whether a face is so narrow that rounding decides which way it looks. Cuts through bodies leave some. The faces beside it cover its
+/// places.
 bool is_sliver(const FaceOf<2>& edge) { return edge[0] == edge[1]; }
 bool is_sliver(const FaceOf<3>& triangle) {
-  constexpr float kNarrow = 1e-4f;  // a height, of the longest side
+  constexpr float kNarrow = 1e-4f;  // height, as a share of the longest side
   float longest = 0;
   for (std::size_t i = 0; i < 3; ++i)
     longest = std::max(longest, (triangle[(i + 1) % 3] - triangle[i]).squaredNorm());
@@ -93,11 +94,11 @@ int turns_of(const FaceOf<3>& triangle, int axis, const Vector3f& point, bool& a
   return turns;
 }
 
-/// In proportion to the volume between the origin and a face; negative where it is seen from behind.
+/// In proportion to the volume between the origin and a face; negative if the face's back is seen from outside.
 float volume_below(const FaceOf<2>& edge) { return cross(edge[0], edge[1]); }
 float volume_below(const FaceOf<3>& triangle) { return triangle[0].dot(triangle[1].cross(triangle[2])); }
 
-/// The share of the way at which it passes a face; beyond 1: it does not.
+/// The fraction of a segment at which it crosses a face; beyond 1: it does not.
 float share_of(const FaceOf<2>& edge, const Vector2f& from, const Vector2f& along) {
   const Vector2f ab = edge[1] - edge[0], off = edge[0] - from;
   const float area = cross(along, ab);
@@ -187,7 +188,7 @@ SurfaceQuery<kDimension>::SurfaceQuery(std::vector<Face> faces) {
   build(0, 0, static_cast<std::uint32_t>(faces_.size()));
 }
 
-/// Halves the faces along the longest axis of their middles.
+/// Splits the faces in halves along the longest axis of their middles.
 template <int kDimension>
 void SurfaceQuery<kDimension>::build(std::uint32_t node, std::uint32_t first, std::uint32_t count) {
   SC_ASSERT(count > 0 && first + count <= faces_.size(), "{} faces from {} on, of {}", count, first,
@@ -204,7 +205,7 @@ void SurfaceQuery<kDimension>::build(std::uint32_t node, std::uint32_t first, st
   if (count <= kFacesInLeaf) return;
   Eigen::Index axis;
   (middles.high - middles.low).maxCoeff(&axis);
-  // Faces and numbers are sorted together; equal middles by number, so that the tree is the same everywhere.
+  // Sorts faces and numbers together, equal middles by number, so that the tree is the same everywhere.
   std::vector<std::uint32_t> order(count);
   for (std::uint32_t i = 0; i < count; ++i) order[i] = first + i;
   const auto place = [&](std::uint32_t i) {
@@ -271,7 +272,7 @@ std::optional<SurfaceHit<kDimension>> SurfaceQuery<kDimension>::cast_ray(const V
         [&](std::uint32_t i) {
           if (is_narrow_[i]) return;
           const float share = share_of(faces_[i], from, along);
-          // Of equal ones that with the lower number.
+          // Of equally near faces, takes the one with the lower number.
           if (share < best || (share == best && share <= 1 && numbers_[i] < numbers_[best_face]))
             best = share, best_face = i;
         });
@@ -337,7 +338,7 @@ float SurfaceQuery<kDimension>::distance(const Vector& point) const {
   return is_inside(point, found) ? -std::sqrt(found.square) : std::sqrt(found.square);
 }
 
-/// Goes on by as much as is free, which is never too far.
+/// Moves the sphere on by its distance from the surface again and again, which is never too far.
 template <int kDimension>
 std::optional<SurfaceHit<kDimension>> SurfaceQuery<kDimension>::cast_sphere(const Vector& from,
                                                                             const Vector& to,
@@ -345,7 +346,7 @@ std::optional<SurfaceHit<kDimension>> SurfaceQuery<kDimension>::cast_sphere(cons
   SC_ASSERT(from.allFinite() && to.allFinite() && radius > 0, "a sphere of {} m", radius);
   const Vector along = to - from;
   const float length = along.norm(), near = 1e-4f * radius;
-  const float least_step = 1e-3f * radius;  // of a way that runs along a surface
+  const float least_step = 1e-3f * radius;  // for a sphere that moves along a surface
   if (const Nearest found = nearest(from); is_inside(from, found))
     return hit_of(found.face, 0, found.position);
   float done = 0;

@@ -1,5 +1,5 @@
 #pragma once
-// Boxes around triangles, to find those near a point.
+// Boxes around triangles, to find the triangles near a point.
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -13,8 +13,8 @@
 
 namespace softcell::ppu {
 
-/// In two layers: around each triangle, and around each 16 that follow each other. A search is quick when triangles that follow each
-/// other lie near each other, as those of meshes and height fields do. Allocates only when there are more triangles than ever before.
+/// Two layers of boxes: around each triangle, and around each 16 successive ones. A search is quick when successive triangles lie near each
+/// other, as those of meshes and height fields do. Allocates only when there are more triangles than ever before.
 class TriangleBoxes {
  public:
   void place(std::span<const std::array<Eigen::Vector3f, 3>> triangles);
@@ -55,7 +55,7 @@ class TriangleBoxes {
     return (items + in_each - 1) / in_each;
   }
 
-  /// @param count  boxes there are; what fills up the last four is no box
+  /// @param count  number of boxes; the lanes beyond it, which fill up the last four, are no boxes
   template <typename Work>
   static void for_each_lane(std::span<const FourBoxes> fours, std::size_t count, const Bounds<3>& box,
                             const Work& work) {

@@ -54,7 +54,7 @@ Vector3i TriangleGrid::cube_of(const Vector3f& point) const {
 struct TriangleGrid::Nearest {
   float squared = std::numeric_limits<float>::max();
   float facing = 0;  // of the point and the triangle: cosine, above 0 in front
-  // What is farther away than this is not as near, however distances are rounded.
+  // A triangle farther away than this is not as near, however distances are rounded.
   float beyond = std::numeric_limits<float>::max();
 };
 
@@ -87,7 +87,7 @@ float TriangleGrid::signed_distance(const Vector3f& point, float reach) const {
   Nearest nearest;
   const int last_ring = static_cast<int>(std::ceil(reach / edge_)) + 1;
   for (int ring = 0; ring <= last_ring; ++ring) {
-    // What lies in a ring is at least so far away.
+    // A triangle in this ring is at least so far away.
     const float least = static_cast<float>(ring - 1) * edge_;
     if (ring > 0 && nearest.squared < least * least) break;
     for (int z = -ring; z <= ring; ++z)

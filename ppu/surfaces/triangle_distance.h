@@ -1,5 +1,5 @@
 #pragma once
-// How far a point is from the surface of a mesh, and on which side.
+// Measures how far a point is from the surface of a mesh, and on which side.
 
 #include <Eigen/Core>
 #include <array>
@@ -10,8 +10,8 @@
 
 namespace softcell::ppu {
 
-/// The point of the triangle that is nearest to `point`.  [Eri05, 5.1.5] In single precision the result may be off by the rounding of the
-/// triangle's longest side, times that side by the height upon it.
+/// The point of the triangle that is nearest to `point`.  [Eri05, 5.1.5] In single precision its error may be the rounding error of the
+/// triangle's longest side, times the ratio of that side to the height upon it.
 template <typename Real>
 Eigen::Vector3<Real> nearest_point(const std::array<Eigen::Vector3<Real>, 3>& triangle,
                                    const Eigen::Vector3<Real>& point) {
@@ -35,7 +35,8 @@ Eigen::Vector3<Real> nearest_point(const std::array<Eigen::Vector3<Real>, 3>& tr
   const Real scale = 1 / (va + vb + vc);
   return a + vb * scale * ab + vc * scale * ac;
 }
-// One of each for all, in triangle_distance.cpp: tests with sanitizers are compiled without optimisation, and the linker would take theirs.
+// Instantiated once, in triangle_distance.cpp: tests with sanitizers are compiled without optimisation, and the linker would take their
+// copies.
 extern template Eigen::Vector3f nearest_point(const std::array<Eigen::Vector3f, 3>&, const Eigen::Vector3f&);
 extern template Eigen::Vector3d nearest_point(const std::array<Eigen::Vector3d, 3>&, const Eigen::Vector3d&);
 
@@ -55,7 +56,7 @@ class TriangleGrid {
   void look_at_cube(const Eigen::Vector3i& cube, const Eigen::Vector3f& point, Nearest& nearest) const;
   Eigen::Vector3i cube_of(const Eigen::Vector3f& point) const;
 
-  /// Around a triangle: most triangles are farther away than the nearest one by more than its radius.
+  /// Around a triangle. Most triangles need no closer look: their spheres are farther away than the nearest triangle.
   struct Sphere {
     float x, y, z, radius;
   };

@@ -1,5 +1,5 @@
 #pragma once
-// The part of a straight way that lies in a box.
+// The part of a line segment that lies in a box.
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -8,12 +8,12 @@
 
 namespace softcell::ppu {
 
-/// From `first` to `last`, as shares of the way, 0..1. Where `first` is larger, no part is in the box.
+/// From `first` to `last`, as fractions of the segment, 0..1. If `first` is larger, no part is in the box.
 struct WayInBox {
   float first = 0, last = 1;
 };
 
-/// @param along  from the way's begin to its end
+/// @param along  from the segment's begin to its end
 template <int kDimension>
 WayInBox way_in_box(const Bounds<kDimension>& box, const Eigen::Vector<float, kDimension>& from,
                     const Eigen::Vector<float, kDimension>& along) {
@@ -30,7 +30,7 @@ WayInBox way_in_box(const Bounds<kDimension>& box, const Eigen::Vector<float, kD
   return part;
 }
 
-/// Rounding must not part two boxes that share a side.
+/// Tolerates rounding: it must not part two boxes that share a side.
 inline bool is_any(const WayInBox& part) { return part.first <= part.last + 1e-6f; }
 
 }  // namespace softcell::ppu

@@ -1,5 +1,5 @@
 #pragma once
-// What verbs this build of the command has: all_verbs.cpp or, where there are no demos, kernel_verbs.cpp.
+// The verbs that this build of the command has: all_verbs.cpp defines them or, without demos, kernel_verbs.cpp.
 
 #include <span>
 #include <string_view>
@@ -11,7 +11,7 @@ namespace softcell::tool {
 /// In the order in which --help lists them.
 Verbs all_verbs();
 
-/// The verbs that only builds with demos have, in one without.
+/// The verbs that only builds with demos have; empty in such a build.
 std::span<const std::string_view> left_out_verbs();
 
 }  // namespace softcell::tool

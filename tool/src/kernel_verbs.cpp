@@ -1,4 +1,4 @@
-// The command without demos: nothing here needs a physics engine, a renderer or a mesh.
+// The verbs of a command without demos: nothing here needs a physics engine, a renderer or a mesh.
 
 #include "all_verbs.h"
 

@@ -1,5 +1,4 @@
-// The command `softcell`: parses the command line, calls a verb, turns what goes wrong into one line and an
-// exit status.
+// The command `softcell`: parses the command line, calls a verb, and turns an error into one line and an exit status.
 
 #include <CLI/CLI.hpp>
 #include <cerrno>
@@ -49,7 +48,7 @@ class CommandLine {
     return chosen_();
   }
 
-  /// That was called; the command itself before run().
+  /// The verb that was called; before run(), the command itself.
   std::string verb() const { return called_verb(app_); }
 
  private:
@@ -59,7 +58,7 @@ class CommandLine {
   Call chosen_;
 };
 
-/// What was printed may still wait in the stream, and a full disk shows when it goes out.
+/// Printed text may still be in the stream's buffer, and a full disk shows only when it is flushed.
 void finish_printing() {
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return;
   throw std::runtime_error(std::string("cannot write to standard output: ") + std::strerror(errno));

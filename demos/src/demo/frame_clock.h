@@ -11,8 +11,8 @@ class FrameClock {
   using Clock = std::chrono::steady_clock;
   static constexpr std::chrono::nanoseconds kFrame{1'000'000'000 / 60};
 
-  /// Until the next frame is due. A late one is due at once, and those after it count from there: time that
-  /// is lost is not made up for, which would make frames later still.
+  /// Waits until the next frame is due. A late frame is due at once, and the frames after it count from there: lost time is not made up
+  /// for, since that would make later frames late as well.
   void wait() {
     next_ += kFrame;
     const Clock::time_point now = Clock::now();

@@ -1,5 +1,5 @@
 #pragma once
-// Passes the newest value of one thread to another. Neither waits for the other.
+// Passes the newest value from one thread to another. Neither thread waits for the other.
 
 #include <array>
 #include <condition_variable>
@@ -17,7 +17,7 @@ class Latest {
  public:
   // The writer's side.
 
-  /// The copy to be filled; it still holds an earlier value.
+  /// The copy that the writer fills next; it still holds an earlier value.
   Value& next() { return values_[writing_]; }
   /// Makes next() the newest.
   void publish() {

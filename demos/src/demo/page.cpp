@@ -21,15 +21,15 @@ constexpr ImGuiWindowFlags kPlain = ImGuiWindowFlags_NoDecoration | ImGuiWindowF
                                     ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoInputs |
                                     ImGuiWindowFlags_NoNav;
 
-/// Rows of a name and what belongs to it, in letters that are smaller where a box would not fit into the window otherwise.
+/// Rows of a name and a text. Makes the letters smaller if the box would not fit into the window otherwise.
 class Rows {
  public:
   void add(std::string name, std::string text) { rows_.emplace_back(std::move(name), std::move(text)); }
 
-  /// @param room  of the box that it fills, pixels
+  /// @param room  for the box that it fills, pixels
   void draw(const char* id, const ImVec2& room) const {
     const ImGuiStyle& style = ImGui::GetStyle();
-    ImGui::SetWindowFontScale(1);  // of the frame before
+    ImGui::SetWindowFontScale(1);  // undoes the scale of the previous frame
     float names = 0, texts = 0;
     for (const auto& [name, text] : rows_) {
       names = std::max(names, ImGui::CalcTextSize(name.c_str()).x);
@@ -42,7 +42,7 @@ class Rows {
                                           row / (ImGui::GetTextLineHeight() + 2 * padding.y)}),
                                 kSmallest);
     ImGui::SetWindowFontScale(size);
-    // Between rows, too: where little fits, letters are what counts.
+    // Scales the space between rows as well: where there is little room, the letters matter most.
     ImGui::PushStyleVar(ImGuiStyleVar_CellPadding, ImVec2(size * padding.x, size * padding.y));
     const bool is_open = ImGui::BeginTable(id, 2);
     ImGui::PopStyleVar();
@@ -58,7 +58,7 @@ class Rows {
   }
 
  private:
-  static constexpr float kSmallest = 0.2f;  // nobody reads what is smaller
+  static constexpr float kSmallest = 0.2f;  // nobody could read smaller letters
 
   std::vector<std::pair<std::string, std::string>> rows_;
 };
@@ -116,7 +116,7 @@ void draw_box(const char* name, const ImVec2& position, const ImVec2& pivot, con
   ImGui::End();
 }
 
-/// What the knife is about to cut.
+/// Draws the stroke that the knife is about to cut.
 void draw_stroke(const Page& page, float scale) {
   const auto at = [&](const Eigen::Vector2f& share) {
     return ImVec2(share.x() * static_cast<float>(page.width), share.y() * static_cast<float>(page.height));
@@ -127,7 +127,7 @@ void draw_stroke(const Page& page, float scale) {
   list.AddLine(from, to, IM_COL32(255, 255, 255, 255), 2 * scale);
 }
 
-/// A controller's hand: a ring, which is full when it holds something.
+/// A controller's hand: a ring, which is filled when the hand holds something.
 void draw_hand(const Page& page, const PointingHand& hand, float scale) {
   const ImVec2 at(hand.at.x() * static_cast<float>(page.width),
                   hand.at.y() * static_cast<float>(page.height));
@@ -138,7 +138,7 @@ void draw_hand(const Page& page, const PointingHand& hand, float scale) {
   list.AddCircle(at, radius, IM_COL32(255, 255, 255, 255), 32, 2 * scale);
 }
 
-/// Inside a margin.
+/// The size without the margins.
 ImVec2 room_in(float width, float height, float scale) {
   return {width - 2 * kMargin * scale, height - 2 * kMargin * scale};
 }
@@ -146,7 +146,7 @@ ImVec2 room_in(float width, float height, float scale) {
 /// @param width, height  of the picture, pixels
 void draw_statistics_box(const Page& page, float scale, const std::optional<double>& shown_per_second,
                          int width, int height) {
-  constexpr float kShareOfHeight = 0.6f;  // below are the hint and what the window says
+  constexpr float kShareOfHeight = 0.6f;  // the hint and the messages of the window are below
   const ImVec2 room = room_in(static_cast<float>(width), kShareOfHeight * static_cast<float>(height), scale);
   draw_box("statistics", {kMargin * scale, kMargin * scale}, {0, 0},
            [&] { figures(page, shown_per_second).draw("figures", room); });
@@ -156,7 +156,7 @@ void draw_statistics_box(const Page& page, float scale, const std::optional<doub
 
 void draw_statistics(const Page& page, float scale, render::Overlay& overlay, render::Renderer& renderer) {
   SC_ASSERT(scale > 0, "the figures of scene '{}' are scaled by {}", page.scene, scale);
-  // Dear ImGui makes a box as large as what was in it the time before, and hides it the first time.
+  // Dear ImGui gives a box the size of its contents in the previous frame, and hides it in the first frame.
   for (const bool for_size : {true, false}) {
     overlay.begin(renderer.width(), renderer.height(), 1.0f / 60);
     draw_statistics_box(page, scale, std::nullopt, renderer.width(), renderer.height());

@@ -15,7 +15,7 @@ namespace softcell::demos {
 namespace {
 
 constexpr float kPictureHeight = 50;  // of a scene in the list, at scale 1, pixels
-constexpr float kSceneRows = 3.5f;    // that are seen at a time
+constexpr float kSceneRows = 3.5f;    // rows that are visible at a time
 constexpr float kFrameMs = 1000.0f / 60;
 constexpr float kGraphMs = 2 * kFrameMs;  // the height of the graph
 
@@ -23,7 +23,7 @@ struct Part {
   const char* name;
   ImU32 colour;
 };
-// As in the figures of a run; docs/guide/playing.md.
+// The same parts as in the figures of a run; docs/guide/playing.md.
 constexpr std::array<Part, 5> kDrawnParts{{{"rigid bodies", IM_COL32(230, 150, 60, 255)},
                                            {"contacts", IM_COL32(210, 80, 80, 255)},
                                            {"shape matching", IM_COL32(90, 160, 230, 255)},
@@ -57,7 +57,7 @@ void Panel::draw(const Demo& demo, float scale, int width, int height, WindowInp
   const float given = std::clamp(static_cast<float>(width) - 2 * margin, 1.0f, wanted);
   ImGui::SetNextWindowPos({margin, margin}, ImGuiCond_Always);
   ImGui::SetNextWindowSize({given, std::max(static_cast<float>(height) - 2 * margin, 1.0f)});
-  // In a window that is too narrow letters are smaller; what is between them is not.
+  // In a window that is too narrow, letters are smaller; the space between them is not.
   const float smaller = given < wanted ? std::max(0.85f * given / wanted, 0.2f) : 1;
   if (opens) ImGui::SetNextWindowFocus();
   bool open = true;
@@ -96,7 +96,7 @@ bool Panel::slider(const char* name, float& value, float low, float high, const 
 void Panel::draw_scenes(const Demo& demo, float scale, bool opens) {
   if (opens) own_scenes_ = demo.own_scenes();
   if (!ImGui::CollapsingHeader("Scenes", ImGuiTreeNodeFlags_DefaultOpen)) return;
-  // Flattened: the arrow keys go on from the widgets around it.
+  // Flattened, so that the arrow keys go on from the widgets around it.
   const float row = kPictureHeight * scale + ImGui::GetStyle().ItemSpacing.y;
   if (ImGui::BeginChild("scenes", {0, kSceneRows * row}, true, ImGuiWindowFlags_NavFlattened)) {
     if (!own_scenes_.empty()) ImGui::TextUnformatted("Scene files here");
@@ -112,7 +112,7 @@ void Panel::draw_scenes(const Demo& demo, float scale, bool opens) {
   ImGui::EndChild();
 }
 
-/// A row with the scene's picture, name and title. @return  the user chooses it
+/// A row with the scene's picture, name and title. @return  whether the user chooses it
 bool Panel::draw_scene(const SceneTitle& scene, bool is_current, float scale) const {
   const ImVec2 picture{kPictureHeight * scale * ScenePictures::kWidth / ScenePictures::kHeight,
                        kPictureHeight * scale};
@@ -181,7 +181,7 @@ void Panel::draw_material(const Demo& demo, WindowInput& input) {
     float value = shown.alpha;
     if (slider("alpha", value, 0, 1, "%.3f")) input.change(Action::kAlpha, changed, value);
   } else if (stiffness_by_ == 1) {
-    // What alpha 1 is, no frequency exceeds: a sixth of the steps' rate.
+    // No frequency exceeds that of alpha 1, which is a sixth of the rate of steps.
     float value = shown.frequency.value_or(0);
     if (slider("frequency", value, 0, 1 / (6 * step), shown.frequency ? "%.1f Hz" : "not set"))
       input.change(Action::kFrequency, changed, value);
@@ -209,7 +209,7 @@ void Panel::draw_plasticity(const BodyMaterial& shown, std::uint32_t changed, Wi
 }
 
 void Panel::draw_density(const BodyMaterial& shown, std::uint32_t changed, int dimension) {
-  // Another density makes another model: once, when the slider is let go.
+  // Another density needs another model, so it is set once, when the user lets the slider go.
   float density = density_.value_or(shown.density);
   if (slider("density", density, 1, 5000, dimension == 3 ? "%.0f kg/m\xC2\xB3" : "%.0f kg/m\xC2\xB2", true))
     density_ = density;

@@ -37,7 +37,7 @@ PictureFolders::PictureFolders(const PictureOptions& options) : PictureFolders()
                                " is not a folder and cannot be created: " + error.message());
     }
   }
-  if (options.video) make(options.video->parent_path());  // what is wrong with it, the writer will say
+  if (options.video) make(options.video->parent_path());  // the writer reports what is wrong with it
 }
 
 PictureFolders::~PictureFolders() {

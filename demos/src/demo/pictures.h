@@ -1,5 +1,5 @@
 #pragma once
-// The pictures of a headless run: numbered files, a video, or one for its hash alone.
+// The pictures of a headless run: numbered files, a video, or a single one for its hash.
 
 #include <cstdint>
 #include <filesystem>
@@ -29,32 +29,32 @@ struct PictureOptions {
   std::optional<std::filesystem::path> video;
   std::optional<int> fps;  ///< frames a second of the video, 1..60; none: as many as the format shows well
   PictureSize size;
-  int supersample = 1;      ///< drawn so many times as large in both directions, and made smaller; above 0
-  bool statistics = false;  ///< of each frame, over its picture
-  /// In three dimensions, seconds in which the camera goes about the scene once; none: it stays.
+  int supersample = 1;      ///< factor by which pictures are drawn larger, then scaled down; above 0
+  bool statistics = false;  ///< drawn over each picture
+  /// In three dimensions, the seconds in which the camera goes once around the scene; none: it does not move.
   std::optional<double> turntable = {};
   std::vector<render::PngText> texts = {};  ///< written into each numbered frame: how it was made
 };
 
-/// Frames of 1/60 s that a video has.
+/// Decides which frames of 1/60 s a video shows.
 class FilmRate {
  public:
   static constexpr int kFramesPerSecond = 60;
   /// @param per_second  1..60
   explicit FilmRate(int per_second);
-  /// Sixty, or for a GIF twenty, of which all have the same time.
+  /// Sixty frames a second, or twenty for a GIF, whose frames then all last equally long.
   static FilmRate usual(const std::filesystem::path& video);
 
   int per_second() const { return per_second_; }
-  /// Whether the video shows the frame: the first, and then so many in each second.
+  /// Whether the video shows this frame: it shows the first, then per_second() in each second.
   bool shows(int frame) const;
 
  private:
   int per_second_;
 };
 
-/// The folders that pictures and videos go to. Those that were not there are made; at the end of its life the ones in
-/// which nothing lies are removed, so that a run that fails leaves none.
+/// Makes the folders that pictures and videos go to, where they do not exist. The destructor removes those that are still empty, so that a
+/// run that fails leaves none behind.
 class PictureFolders {
  public:
   /// @throws std::runtime_error  --out is no folder and cannot be made one.
@@ -70,13 +70,13 @@ class PictureFolders {
   std::vector<std::filesystem::path> made_;  // outer ones first
 };
 
-/// The folder of numbered frames. Removes those of an earlier run, so that all frames in it belong to one run.
+/// The folder of numbered frames. Removes the frames of an earlier run, so that all frames in it belong to one run.
 class FrameFolder {
  public:
   /// @pre the folder is there
   explicit FrameFolder(std::filesystem::path folder);
 
-  /// @param texts  to which the frame's number is added
+  /// @param texts  are written into the file, together with the frame's number
   void write(int frame, const render::Image& image, std::span<const render::PngText> texts) const;
 
  private:
@@ -91,10 +91,10 @@ class Pictures {
 
   bool every_frame() const { return folder_ || video_; }
 
-  /// Call it after each frame: updates the statistics that stand over the pictures.
+  /// Call it after each frame: it updates the statistics that are drawn over the pictures.
   void follow(const FrameTimes& times);
 
-  /// Draws the frame, unless it is only for a video that does not show it.
+  /// Draws the frame, unless only a video needs it and the video does not show this frame.
   void add(int frame);
   /// Completes the video.
   void finish();
@@ -104,7 +104,7 @@ class Pictures {
   const std::vector<double>& milliseconds() const { return milliseconds_; }  ///< of each picture
 
  private:
-  /// Figures over the pictures.
+  /// The figures over the pictures.
   struct Statistics {
     explicit Statistics(float text_scale) : scale(text_scale), overlay(text_scale) {}
     float scale;
@@ -124,7 +124,7 @@ class Pictures {
   std::unique_ptr<render::VideoWriter> video_;
   std::unique_ptr<render::GlContext> context_;
   std::unique_ptr<render::Renderer> renderer_;
-  std::unique_ptr<Statistics> statistics_;  // where they are asked for
+  std::unique_ptr<Statistics> statistics_;  // null: not asked for
   render::Image smaller_;
   std::uint64_t hash_ = 0;
   std::vector<double> milliseconds_;

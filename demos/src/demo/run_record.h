@@ -15,9 +15,9 @@
 
 namespace softcell::demos {
 
-/// What a run measured.
+/// The measurements of a run.
 struct RunRecord {
-  /// Of each frame.
+  /// One number per frame.
   std::vector<double> physics_ms, ppu_ms, gather_ms, solve_ms, apply_ms, contacts_ms, skin_ms, solver_wait_ms,
       skin_wait_ms, ps3_ms;
   std::vector<double> picture_ms;  ///< of each picture
@@ -25,7 +25,7 @@ struct RunRecord {
   double seconds = 0;              ///< of the frame loop, pictures included
   int frames = 0;
   std::optional<int> asked_frames;  ///< none: the user decides when the run ends
-  std::uint64_t image_hash = 0;     ///< of the last picture; a window's are not read back
+  std::uint64_t image_hash = 0;     ///< of the last picture; 0 in a window, whose pictures are not read back
   bool interrupted = false;
 
   void add(const FrameTimes& times) {
@@ -44,7 +44,7 @@ struct RunRecord {
     ++frames;
   }
 
-  /// What softcell takes of the PPU's time in a frame of 1/60 s.
+  /// The share of the PPU's time that softcell uses at 60 frames a second.
   double ppu_share() const { return frames == 0 ? 0 : sum(ppu_ms) / frames * 60 / 1000; }
 
   std::uint64_t upload_bytes_of_a_picture() const {
@@ -67,9 +67,8 @@ struct Run {
   RunRecord record;
 };
 
-/// Does the work, then saves the recording of its frames. If the work throws, the recording is saved too, with
-/// the frame that failed, so that the failure can be replayed; an error of saving is then only printed, and the
-/// work's exception goes on.
+/// Calls `work`, then saves the recording of its frames. If `work` throws, the recording is saved as well, with the frame that failed, so
+/// that the failure can be replayed; a failure to save is then only printed, and the exception of `work` is passed on.
 inline void run_recorded(Demo& demo, const std::function<void()>& work) {
   SC_ASSERT(static_cast<bool>(work), "a run of scene '{}' without work", demo.scene_name());
   try {

@@ -1,6 +1,6 @@
 #pragma once
-// What the demos of both dimensions have in common: they step a scene with the events of its user or of its
-// replay, record the events, and publish and draw frames.
+// The common part of the demos of both dimensions: it steps a scene with the events of its user or of a replay, records the events, and
+// publishes and draws frames.
 
 #include <memory>
 #include <optional>
@@ -20,8 +20,8 @@
 namespace softcell::demos {
 
 /// A scene, its simulation, its log and its view.
-/// @tparam Types  names those of one dimension: kDimension, Scene, Simulation, Shown (what a picture needs),
-///                SceneView (what draws it) and View (an enumeration, of which there are kViews).
+/// @tparam Types  names the types of one dimension: kDimension, Scene, Simulation, Shown (what a picture needs),
+///                SceneView (what draws it) and View (an enumeration with kViews values).
 template <class Types>
 class SceneDemo : public Demo {
  public:
@@ -52,7 +52,7 @@ class SceneDemo : public Demo {
     return times;
   }
   std::optional<PickedParticle> picked() const override {
-    // What it was of may have broken.
+    // The body may have broken since.
     if (!picked_ || picked_->body >= simulation_.soft_bodies() ||
         picked_->particle >= simulation_.soft_body(picked_->body).positions().size())
       return std::nullopt;
@@ -106,7 +106,7 @@ class SceneDemo : public Demo {
   const typename Types::Simulation& simulation() const { return simulation_; }
   typename Types::Simulation& simulation() { return simulation_; }
 
-  /// The materials as they are now, which may be others than those of the scene.
+  /// The present materials, which may differ from those of the scene.
   std::vector<ppu::SoftBodySettings> settings_of_bodies() const {
     std::vector<ppu::SoftBodySettings> all;
     for (std::size_t b = 0; b < scene_.soft_bodies.size(); ++b)
@@ -114,7 +114,7 @@ class SceneDemo : public Demo {
     return all;
   }
 
-  /// @throws std::runtime_error  the scene stays what it is
+  /// @throws std::runtime_error  the run is recorded or replayed, and its scene cannot be changed
   void require_changeable() const {
     if (log_.records() || log_.replays())
       throw std::runtime_error(
@@ -137,7 +137,7 @@ class SceneDemo : public Demo {
     }
   }
 
-  /// Records a frame that fails, too, so that a replay fails in it.
+  /// Records a frame also if it fails, so that a replay fails in the same frame.
   FrameTimes step_simulation(std::span<const InputEvent<kDimension>> events) {
     FrameTimes times;
     try {

@@ -29,7 +29,7 @@ std::optional<std::array<float, 4>> ScenePictures::place(std::string_view scene)
   const auto found = row_.find(scene);
   if (found == row_.end()) return std::nullopt;
   const float share = 1 / static_cast<float>(row_.size()), top = share * static_cast<float>(found->second);
-  // Half a pixel inside, where the neighbour's colours do not get in.
+  // Half a pixel inside, so that colours of the neighbouring picture are not mixed in.
   const float inset = 0.5f / static_cast<float>(sheet_.height);
   return std::array{0.0f, top + inset, 1.0f, top + share - inset};
 }

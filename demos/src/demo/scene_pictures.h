@@ -12,21 +12,22 @@
 
 namespace softcell::demos {
 
-/// All of them in one sheet, which the overlay shows parts of. Reading them takes some milliseconds. Any thread, once it is made.
+/// All pictures in one sheet, of which the overlay shows parts. Reading them takes some milliseconds. Any thread may use it once it is
+/// made.
 class ScenePictures {
  public:
-  static constexpr int kWidth = 160, kHeight = 90;  ///< of one, pixels
+  static constexpr int kWidth = 160, kHeight = 90;  ///< of one picture, pixels
 
   ScenePictures();
 
   const render::Image& sheet() const { return sheet_; }
 
-  /// Where a scene's picture is in the sheet: left, top, right, bottom, each 0..1. None: it has none.
+  /// The place of a scene's picture in the sheet: left, top, right, bottom, each 0..1. None: the scene has no picture.
   std::optional<std::array<float, 4>> place(std::string_view scene) const;
 
  private:
   render::Image sheet_;
-  std::map<std::string, int, std::less<>> row_;  // of kHeight pixels
+  std::map<std::string, int, std::less<>> row_;  // in units of kHeight pixels
 };
 
 }  // namespace softcell::demos

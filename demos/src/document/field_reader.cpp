@@ -40,12 +40,12 @@ std::optional<float> number_within(const Value& value, Range range) {
   SC_ASSERT(range.low <= range.high, "a range from {} to {}", range.low, range.high);
   const auto number = number_in(value);
   if (!number || !std::isfinite(*number)) return std::nullopt;
-  const auto single = static_cast<float>(*number);  // what is used must be in range, too
+  const auto single = static_cast<float>(*number);  // the float that is used must be in range as well
   const auto inside = [&](double x) {
     return x <= range.high && (range.low_excluded ? x > range.low : x >= range.low);
   };
   if (!inside(*number) || (range.low_excluded && !inside(double{single}))) return std::nullopt;
-  // What is not 0 stays so: a mass of 0 does not move.
+  // A number that is not 0 does not become 0, since a mass of 0 does not move.
   return single == 0 && *number != 0 ? std::nextafter(0.0f, *number > 0 ? 1.0f : -1.0f) : single;
 }
 
@@ -69,7 +69,7 @@ float read_number(const Value& value, const std::string& name, Range range) {
 int read_integer(const Value& value, const std::string& name, int low, int high) {
   SC_ASSERT(low <= high, "{} is from {} to {}", name, low, high);
   const auto number = number_in(value);
-  // Lua knows one kind of number for a user: 3.0 is whole.
+  // In Lua a user sees one kind of number: 3.0 is a whole number.
   if (!number || *number < low || *number > high || std::floor(*number) != *number) {
     refuse_value(value, name, fmt::format("a whole number from {} to {}", low, high));
   }
@@ -96,7 +96,7 @@ const Value* FieldReader::field(std::string_view key, Need need) {
   SC_ASSERT(!key.empty(), "a field of {} without a name", what_);
   known_.push_back(key);
   const Value* value = find(key);
-  // Said by finish(): when the field is there under a wrong name, that is the better sentence.
+  // finish() reports it: if the field is there under a wrong name, its message is better.
   if (value == nullptr && need == Need::kRequired && missing_.empty()) missing_ = key;
   return value;
 }

@@ -1,5 +1,5 @@
 #pragma once
-// Reads the fields of one table of a scene file. All checks of fields, and all their error sentences, are here.
+// Reads the fields of one table of a scene file. All checks of fields and all their error messages are here.
 //
 //     FieldReader fields(table, "a box");
 //     fields.vector("size", box.size, kLength, Need::kRequired)
@@ -26,19 +26,19 @@ namespace softcell::demos {
 
 enum class Need : std::uint8_t { kOptional, kRequired };
 
-/// What numbers a field may have. Never NaN or infinite.
+/// The values that a number field may have. NaN and infinity are always refused.
 struct Range {
   double low, high;
   bool low_excluded = false;
 };
-inline constexpr double kFar = 1e4;  ///< metres: farther and larger than this, float positions get coarse
+inline constexpr double kFar = 1e4;  ///< metres: farther away or larger than this, float positions get coarse
 inline constexpr Range kLength{.low = 0, .high = kFar, .low_excluded = true};
 inline constexpr Range kCoordinate{.low = -kFar, .high = kFar};
 inline constexpr Range kShare{.low = 0, .high = 1};
 
 class FieldReader {
  public:
-  /// @param table  must outlive this.   @param what  what error sentences call the table: "a box".
+  /// @param table  must outlive this object   @param what  what error messages call the table: "a box".
   /// @throws SceneError  the value is not a table.
   FieldReader(const Value& table, std::string what);
 
@@ -47,8 +47,8 @@ class FieldReader {
   FieldReader& integer(std::string_view key, int& out, int low, int high, Need need = Need::kOptional);
   FieldReader& flag(std::string_view key, bool& out);
   FieldReader& text(std::string_view key, std::string& out, Need need = Need::kOptional);
-  FieldReader& colour(std::string_view key, render::Colour& out);  ///< "#RRGGBB" as painting programs have it
-  /// The same, as painting programs have it: not in linear light.
+  FieldReader& colour(std::string_view key, render::Colour& out);  ///< "#RRGGBB", in sRGB
+  /// The same, kept in sRGB instead of converted to linear light.
   FieldReader& painted_colour(std::string_view key, std::optional<Eigen::Vector3f>& out);
 
   template <int N>
@@ -63,20 +63,20 @@ class FieldReader {
   FieldReader& choice(std::string_view key, std::size_t& out, std::span<const std::string_view> names,
                       Need need = Need::kOptional);
 
-  /// A field that is read by others; null when it is absent.
+  /// A field that the caller reads itself; null when it is absent.
   const Value* field(std::string_view key, Need need = Need::kOptional);
 
-  /// The items of an array; none when it is absent. @throws SceneError  no array, or more than `at_most`.
+  /// The items of an array; none when it is absent. @throws SceneError  the field is no array, or has more than `at_most` items.
   std::span<const Value> items(std::string_view key, std::size_t at_most);
 
-  /// @throws SceneError  a field that was never asked for, or a required one that is absent.
+  /// @throws SceneError  the table has a field that was never asked for, or lacks a required one.
   void finish() const;
 
   const Place& place() const { return table_.place; }
   /// The place of a field, or of the table when it is absent.
   const Place& place(std::string_view key) const;
   const std::string& what() const { return what_; }
-  /// Both, for messages of those who use what was read: "arena.toml:12:1: soft body 3".
+  /// Place and name of the table, for messages of those who use what was read: "arena.toml:12:1: soft body 3".
   std::string described() const { return to_string(place()) + ": " + what_; }
   bool has(std::string_view key) const { return find(key) != nullptr; }
 
@@ -93,13 +93,13 @@ class FieldReader {
 };
 
 /// A finite number within the range.
-/// @param name  of the number, for the sentence: "mass of a box".
+/// @param name  of the number in messages: "mass of a box".
 float read_number(const Value& value, const std::string& name, Range range);
 /// A whole number from `low` to `high`.
 int read_integer(const Value& value, const std::string& name, int low, int high);
 
 /// The entries of a table.
-/// @throws SceneError  it is none, or an array where a table was expected.
+/// @throws SceneError  the value is no table, or is an array where a table was expected.
 const Table& as_table(const Value& value, std::string_view what);
 
 }  // namespace softcell::demos

@@ -48,7 +48,7 @@ class Child {
   Child(const Child&) = delete;
   Child& operator=(const Child&) = delete;
 
-  /// All that the child writes, until it ends or the time is over.
+  /// Everything that the child writes until it ends or its time is over.
   std::string answer() const {
     const auto deadline = std::chrono::steady_clock::now() + std::chrono::duration<double>(kLuaAnswerSeconds);
     std::string message;

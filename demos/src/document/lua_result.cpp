@@ -12,13 +12,13 @@
 namespace softcell::demos {
 namespace {
 
-/// Where in the result a value lies, as a chain on the stack: most are never spelt out.
+/// The place of a value in the result, as a chain on the stack, because most places are never written out.
 struct Path {
   const Path* outer = nullptr;
   std::string_view name;    // in a table
   std::uint32_t index = 0;  // in an array, from 1
 
-  /// "box[2].size[1]"; of the whole result, what it is.
+  /// "box[2].size[1]"; for the result as a whole, what it is.
   std::string text() const { return outer == nullptr ? "what the script returns" : inner_text(); }
 
   std::string inner_text() const {
@@ -79,7 +79,7 @@ class ResultWriter {
       all_names = all_names && lua_type(state_, -2) == LUA_TSTRING;
       all_numbers = all_numbers && lua_isinteger(state_, -2) != 0;
     }
-    if (all_names) return write_entries(path, depth, entries);  // the empty table, too
+    if (all_names) return write_entries(path, depth, entries);  // this includes the empty table
     if (!all_numbers) {
       refuse(path.text() + " has names as well as numbers for keys; give names, or numbers from 1");
     }

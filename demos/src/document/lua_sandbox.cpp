@@ -22,10 +22,10 @@
 namespace softcell::demos {
 namespace {
 
-// As the chunk's name this begins the messages of Lua: "s:12: ...".
+// The chunk's name, with which Lua begins its messages: "s:12: ...".
 constexpr const char* kChunkName = "=s";
 constexpr int kInstructionsBetweenChecks = 1000;
-constexpr double kSlower = SC_ADDRESS_SANITIZER ? 3 : 1;  // whose allocator takes longer than the script
+constexpr double kSlower = SC_ADDRESS_SANITIZER ? 3 : 1;  // the sanitizer slows allocation down
 
 struct Library {
   const char* name;
@@ -53,7 +53,7 @@ double seconds(clockid_t clock) {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-/// What Lua 5.4 has besides, of which nothing is opened.
+/// The other globals of Lua 5.4, of which none is opened.
 constexpr const char* kOtherGlobals[] = {"coroutine", "debug", "io", "os", "package", "require", "utf8"};
 
 class Sandbox {
@@ -86,7 +86,7 @@ class Sandbox {
 
   static void* allocate(void* self, void* block, std::size_t old_size, std::size_t new_size) {
     auto& sandbox = *static_cast<Sandbox*>(self);
-    if (block == nullptr) old_size = 0;  // it is the kind of object then
+    if (block == nullptr) old_size = 0;  // for a new block old_size is the kind of object
     if (new_size > old_size && new_size - old_size > kLuaMaxBytes - sandbox.bytes_) return nullptr;
     void* moved = nullptr;
     if (new_size == 0) {
@@ -109,15 +109,14 @@ class Sandbox {
   }
 
   void check_time() {
-    // Not an error of Lua's, which a chunk might catch: the process ends here.
+    // This is not an error of Lua, which a chunk might catch: the process ends here.
     if (seconds(CLOCK_PROCESS_CPUTIME_ID) > kSlower * kLuaSeconds ||
         seconds(CLOCK_MONOTONIC) - begin_ > kLuaWallSeconds) {
       fail(line_, fmt::format("the script ran for more than {} second here", kLuaSeconds));
     }
   }
 
-  /// table.insert as Lua has it, but that its own moves items in a loop without end when the length is not
-  /// what it seems.
+  /// table.insert as in Lua, except that Lua's own function moves items in an endless loop when the length is not what it seems.
   static int insert(lua_State* state) {
     luaL_checktype(state, 1, LUA_TTABLE);
     const int given = lua_gettop(state);
@@ -134,7 +133,7 @@ class Sandbox {
     return 0;
   }
 
-  /// Tables and functions are written as their type here: as an address, which Lua writes, they would differ from run to run.
+  /// Tables and functions are written as their type here. Lua writes their address, which would differ from run to run.
   static bool has_only_an_address(lua_State* state, int index) {
     const int type = lua_type(state, index);
     return type == LUA_TTABLE || type == LUA_TFUNCTION || type == LUA_TUSERDATA ||
@@ -150,7 +149,7 @@ class Sandbox {
     return 1;
   }
 
-  /// string.format. Upvalue: Lua's own.
+  /// string.format. Upvalue: Lua's own function.
   static int format(lua_State* state) {
     for (const char* c = luaL_checkstring(state, 1); *c != '\0'; ++c) {
       if (*c != '%') continue;
@@ -170,7 +169,7 @@ class Sandbox {
     return 1;
   }
 
-  /// Opens the libraries and leaves only what is allowed, also to methods of texts.
+  /// Opens the libraries and leaves only what is allowed, also in the methods of texts.
   void open_libraries() {
     const auto open = [&](const Library& library) {
       luaL_requiref(state_, library.name, library.open, 1);
@@ -201,7 +200,7 @@ class Sandbox {
     lua_rawseti(state_, LUA_REGISTRYINDEX, LUA_RIDX_GLOBALS);
   }
 
-  /// Random numbers are the same in every run.
+  /// Makes random numbers the same in every run.
   void seed_random() {
     lua_getglobal(state_, "math");
     lua_getfield(state_, -1, "randomseed");
@@ -210,7 +209,7 @@ class Sandbox {
     lua_pop(state_, 1);
   }
 
-  /// Pushes a table of what is allowed of a library.
+  /// Pushes a table of the allowed functions of a library.
   void push_allowed(const Library& library) {
     lua_newtable(state_);
     lua_getglobal(state_, library.name);
@@ -221,8 +220,8 @@ class Sandbox {
     lua_pop(state_, 1);
   }
 
-  /// Has the table on top of the stack, with what is allowed of the library, say so when a script looks for
-  /// something else that Lua's library has. Any other name is nil, as always.
+  /// Makes the table on top of the stack, which has the allowed functions of the library, report an error when a script looks for another
+  /// function that Lua's library has. Any other name is nil, as always.
   void refuse_the_rest(const Library& library) {
     lua_newtable(state_);  // the metatable
     lua_pushstring(state_, library.name);
@@ -250,15 +249,15 @@ class Sandbox {
     lua_setmetatable(state_, -2);
   }
 
-  /// __index: called for a name that is not there. Upvalues: the library's name, and a table of the names that
-  /// Lua has and a scene has not.
+  /// __index: Lua calls it for a name that the table does not have. Upvalues: the library's name, and a table of the names that Lua has and
+  /// a scene does not have.
   static int find_the_rest(lua_State* state) {
     lua_settop(state, 2);
     lua_pushvalue(state, 2);
     if (lua_rawget(state, lua_upvalueindex(2)) == LUA_TNIL) return 1;
     const std::string_view library = lua_tostring(state, lua_upvalueindex(1));
     const bool is_global = library == kBaseLibrary.name;
-    // No object of C++ may be alive when luaL_error leaves this function: the list is made by Lua.
+    // No C++ object may be alive when luaL_error leaves this function, so Lua makes the list.
     luaL_Buffer names;
     luaL_buffinit(state, &names);
     bool is_first = true;
@@ -283,7 +282,7 @@ class Sandbox {
                       lua_tostring(state, 2), lua_tostring(state, -1));
   }
 
-  /// What ("text"):name() finds: the table on top of the stack.
+  /// Makes the table on top of the stack the one in which ("text"):name() is found.
   void make_methods_of_texts() {
     lua_pushliteral(state_, "");
     lua_getmetatable(state_, -1);
@@ -292,7 +291,7 @@ class Sandbox {
     lua_pop(state_, 2);
   }
 
-  /// Ends with the error on top of the stack.
+  /// Ends the process with the error on top of the stack.
   [[noreturn]] void fail_with_error(int status) {
     if (status == LUA_ERRMEM)
       fail(line_, fmt::format("the script needs more than {} MB", kLuaMaxBytes >> 20));
@@ -322,11 +321,11 @@ class Sandbox {
   int descriptor_;
   lua_State* state_ = nullptr;
   std::size_t bytes_ = 0;
-  int line_ = 1;  // at which the chunk is; before it runs, its first
+  int line_ = 1;  // the chunk's present line; before it runs, its first line
   double begin_ = 0;
 };
 
-/// The process's address space now, in bytes: what it inherited is no fault of the chunk's.
+/// The present address space of the process, in bytes: the chunk is not responsible for what the process inherited.
 rlim_t address_space() {
   unsigned long pages = 0;
   if (std::FILE* file = std::fopen("/proc/self/statm", "r")) {
@@ -341,14 +340,14 @@ void set_limit(__rlimit_resource resource, rlim_t value) {
   setrlimit(resource, &limit);
 }
 
-// The address sanitizer's runtime maps memory as it likes and reads /proc when an exception is thrown. What a
-// script has cannot open files, and Lua's allocator keeps its limit, there too.
+// The address sanitizer's runtime maps memory as it likes and reads /proc when an exception is thrown. Under it, too, a script has no
+// function that opens files, and Lua's allocator keeps its limit.
 constexpr bool kLimitProcess = SC_ADDRESS_SANITIZER == 0;
 
 }  // namespace
 
 void run_sandboxed(std::string_view chunk, int descriptor) {
-  constexpr rlim_t kSpareBytes = rlim_t{192} << 20;  // Lua's, the message's, and the allocator's own
+  constexpr rlim_t kSpareBytes = rlim_t{192} << 20;  // for Lua, for the message, and for the allocator itself
   if (kLimitProcess) set_limit(RLIMIT_AS, address_space() + kSpareBytes);
   set_limit(RLIMIT_CPU, static_cast<rlim_t>(std::ceil(kSlower * kLuaSeconds)) + 1);
   set_limit(RLIMIT_CORE, 0);

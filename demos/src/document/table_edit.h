@@ -1,5 +1,5 @@
 #pragma once
-// Changes of tables of a scene's document.
+// Functions that change tables of a scene's document.
 
 #include <algorithm>
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace softcell::demos {
 
-/// Null: there is no such field.
+/// Null: the table has no such field.
 inline Value* find_field(Table& table, std::string_view name) {
   const auto found = std::ranges::find(table, name, &Field::name);
   return found == table.end() ? nullptr : &found->value;
@@ -32,13 +32,13 @@ inline void erase_fields(Table& table, std::initializer_list<std::string_view> n
                 [&](const Field& field) { return std::ranges::find(names, field.name) != names.end(); });
 }
 
-/// The table in the field, which is made if there is none.
+/// The table in the field; it is created if there is none.
 inline Table& table_in(Table& table, const std::string& name) {
   if (find_field(table, name) == nullptr) set_field(table, name, {.data = Table{}, .place = {}});
   return std::get<Table>(find_field(table, name)->data);
 }
 
-/// The items of the field's array; null: there are none, or it is an empty table, which is an empty array in Lua.
+/// The items of the field's array. Null: there is no such field, or it is an empty table, which Lua uses for an empty array.
 inline Array* items_in(Table& table, std::string_view name) {
   Value* const value = find_field(table, name);
   return value == nullptr ? nullptr : std::get_if<Array>(&value->data);

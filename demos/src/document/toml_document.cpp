@@ -12,7 +12,7 @@
 namespace softcell::demos {
 namespace {
 
-/// Behind the string that begins at `begin`; the end of the text when it has none.
+/// The position after the string that begins at `begin`; the end of the text if the string has no end.
 std::size_t end_of_string(std::string_view text, std::size_t begin) {
   SC_ASSERT(begin < text.size() && (text[begin] == '"' || text[begin] == '\''),
             "no string begins at {} of {}", begin, text.size());
@@ -23,18 +23,18 @@ std::size_t end_of_string(std::string_view text, std::size_t begin) {
   for (std::size_t i = begin + end.size(); i < text.size(); ++i) {
     if (text.substr(i).starts_with(end)) {
       i += end.size();
-      // A text in three quotes may end with two of its own.
+      // A text in three quotes may end with two quotes of its own.
       for (int more = 0; many_lines && more < 2 && text.substr(i).starts_with(quote); ++more) ++i;
       return i;
     }
     if (text[i] == '\\' && quote == '"') ++i;
-    if (text[i] == '\n' && !many_lines) return i;  // a mistake, which toml++ will name
+    if (text[i] == '\n' && !many_lines) return i;  // a mistake, which toml++ will report
   }
   return text.size();
 }
 
-/// toml++ makes and destroys tables within tables by recursion, and knows no limit to names with dots: one of
-/// a million names would end the process.
+/// toml++ makes and destroys nested tables by recursion, and does not limit names with dots: a name of a million parts would end the
+/// process.
 void refuse_deep_nesting(std::string_view text, const std::shared_ptr<const std::string>& file) {
   int brackets = 0, dots = 0;
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -92,7 +92,7 @@ Value convert(const toml::node& node, const std::shared_ptr<const std::string>& 
     Table table;
     for (const auto& [key, entry] : *entries) {
       table.push_back({std::string(key.str()), convert(entry, file)});
-      // The place of a field is that of its name; a table in brackets already begins there.
+      // The place of a field is that of its name. A table in brackets already begins at its name.
       if (key.source().begin.line > 0) table.back().value.place = place_of(key.source(), file);
     }
     value.data = std::move(table);

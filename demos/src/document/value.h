@@ -1,6 +1,6 @@
 #pragma once
-// What a scene file says, whatever language it is written in: numbers, texts, arrays and tables, each with
-// the place where it is written.
+// The contents of a scene file, whatever language it is written in: numbers, texts, arrays and tables, each with the place where it is
+// written.
 
 #include <cstdint>
 #include <memory>
@@ -36,14 +36,13 @@ struct Field {
   Value value;
 };
 
-/// Tables and arrays within each other. A scene needs five; what is deeper is refused by all readers, whose
-/// recursion must have an end.
+/// How deep tables and arrays may be nested. A scene needs five levels; all readers refuse deeper ones, because their recursion must end.
 inline constexpr int kMaxValueDepth = 32;
 
 /// "a number", "a table", ...
 std::string_view kind_of(const Value& value);
 
-/// A scene that cannot be used: one sentence that begins with the place.
+/// A scene that cannot be used. The message is one sentence that begins with the place.
 class SceneError : public std::runtime_error {
  public:
   SceneError(const Place& place, const std::string& sentence)

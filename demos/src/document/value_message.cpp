@@ -18,7 +18,7 @@ enum Tag : char {
   kTable = 't'
 };
 
-/// Reads what MessageWriter wrote; nothing more once something did not fit.
+/// Reads what MessageWriter wrote; reads nothing more after something did not fit.
 class MessageReader {
  public:
   MessageReader(std::string_view bytes, Place place) : rest_(bytes), place_(std::move(place)) {}

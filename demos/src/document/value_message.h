@@ -1,6 +1,6 @@
 #pragma once
-// How the child that runs Lua hands its result to the parent: one message through a pipe. The parent does not
-// trust it: the child ran somebody else's program.
+// The message by which the child that runs Lua hands its result to the parent through a pipe. The parent does not trust it, because the
+// child ran an unknown program.
 
 #include <memory>
 #include <optional>
@@ -11,7 +11,7 @@
 
 namespace softcell::demos {
 
-/// Builds a message of at most kMaxBytes; beyond that it stays too long, and says so.
+/// Builds a message of at most kMaxBytes. Once it is longer, the writer drops what follows, and too_long() says so.
 class MessageWriter {
  public:
   static constexpr std::size_t kMaxBytes = 8 << 20;
@@ -26,7 +26,7 @@ class MessageWriter {
 
   bool too_long() const { return bytes_.size() > kMaxBytes; }
 
-  /// The message: all that was written, which came about at this line.
+  /// The message with all that was written. @param line  the line at which the chunk ended
   std::string value_message(int line) const;
   static std::string error_message(int line, std::string_view sentence);
 
@@ -36,7 +36,7 @@ class MessageWriter {
   std::string bytes_;
 };
 
-/// The value in a message; empty when the message is not whole. Tables are sorted by key.
+/// The value in a message; empty when the message is incomplete. Tables are sorted by key.
 /// @throws SceneError  the message is an error.
 std::optional<Value> read_message(std::string_view message, const std::shared_ptr<const std::string>& file);
 

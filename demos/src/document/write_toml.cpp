@@ -48,7 +48,7 @@ std::string key_text(const std::string& name) {
   return bare ? name : toml_text(name);
 }
 
-/// The table's fields in the order in which they are written: these, then the others by name.
+/// The table's fields in the order in which they are written: first these four, then the others by name.
 std::vector<const Field*> in_order(const Table& table) {
   constexpr std::array<std::string_view, 4> kFirst{"name", "title", "dimension", "kind"};
   std::vector<const Field*> fields;
@@ -71,7 +71,7 @@ bool is_array_of_tables(const Value& value) {
 std::string inline_value(const Value& value);
 
 std::string inline_array(const Array& array) {
-  // A picture in text is one only if its rows stand below each other.
+  // One can recognise a picture in text only if its rows stand below each other.
   const bool lines = array.size() > 1 && std::ranges::all_of(array, [](const Value& item) {
                        return std::holds_alternative<std::string>(item.data);
                      });
@@ -122,7 +122,7 @@ std::string write_toml(const Value& root) {
     const auto& table = std::get<Table>(field->value.data);
     const std::string key = key_text(field->name);
     if (!table.empty() &&
-        std::ranges::all_of(table, is_table, &Field::value)) {  // of tables, as materials are
+        std::ranges::all_of(table, is_table, &Field::value)) {  // tables of tables, such as materials
       for (const Field& inner : table)
         append_table(fmt::format("[{}.{}]", key, key_text(inner.name)), inner.value);
     } else {
@@ -139,7 +139,7 @@ std::string write_toml(const Value& root) {
 
 Value number_value(float number) {
   SC_ASSERT(std::isfinite(number), "the number {} of a scene", number);
-  // The shortest text of the float, and not its double, of which nobody would know the digits.
+  // The shortest text of the float, not that of its double, whose digits nobody would recognise.
   const std::string text = fmt::format("{}", number);
   double shortest = 0;
   std::from_chars(text.data(), text.data() + text.size(), shortest);

@@ -14,9 +14,9 @@ using Eigen::Vector3f;
 constexpr float kRadiansPerUnit = 0.006f;
 constexpr float kMostRise = 1.5f;
 constexpr float kPerNotch = 0.9f, kNearest = 0.1f, kFarthest = 10;
-constexpr float kFlightInFrame = 0.01f;  // of the distance to what it looks at: 0.6 times that in a second
+constexpr float kFlightInFrame = 0.01f;  // of the distance to the target: 0.6 times that per second
 
-/// To the right, upwards, and towards the viewer.
+/// Unit vectors to the right, upwards, and towards the viewer.
 struct Axes {
   Vector3f right, up, back;
 
@@ -79,7 +79,7 @@ void CameraControl::move(const SDL_MouseMotionEvent& motion, Look& look) const {
   }
   if ((motion.state & SDL_BUTTON_RMASK) != 0) look.looks_around = true;
   turn(motion, look);
-  // The eye stays, and what it looks at moves.
+  // The eye stays in place, and the target moves.
   if ((motion.state & SDL_BUTTON_RMASK) != 0) look.moved += before.eye - moved_by(camera_, look).eye;
 }
 

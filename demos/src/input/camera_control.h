@@ -8,18 +8,19 @@
 
 namespace softcell::demos {
 
-/// Drag with the left button: about what the camera looks at. With the middle one, or with Shift: sideways. With the right one:
-/// looks around, and flies with W A S D Q E. The wheel: nearer and farther. Used by one thread.
+/// Dragging with the left button turns the camera about the point it looks at; with the middle button, or with Shift, it moves the camera
+/// sideways; with the right button the camera looks around, and flies with W A S D Q E. The wheel moves it nearer and farther. Used by one
+/// thread.
 class CameraControl {
  public:
   CameraControl() = default;
-  /// @param camera  the scene's  @param width, height  of the window, in the units in which SDL gives the mouse
+  /// @param camera  the scene's  @param height  of the window, in the units in which SDL gives the mouse
   CameraControl(const render::Camera& camera, int height);
 
-  /// @return true: the event was the camera's, and means nothing else
+  /// @return true: the camera has used the event, and it means nothing else
   bool handle(const SDL_Event& event, Look& look);
 
-  /// Flies on. Call it in each frame.
+  /// Moves the camera on while it flies. Call it in each frame.
   void next_frame(Look& look) const;
 
  private:

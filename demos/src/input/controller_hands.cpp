@@ -37,7 +37,7 @@ bool ControllerHands<Dimension>::handle(const SDL_Event& event) {
       farther_ = nearer_ = 0;
       return false;
     case SDL_WINDOWEVENT: {
-      std::vector<InputEvent<Dimension>> none;  // a window's size is no event of a hand
+      std::vector<InputEvent<Dimension>> none;  // a window's size makes no event of a hand
       for (Hand& hand : hands_) hand.pointer.handle(event, {}, none);
       return false;
     }
@@ -58,7 +58,7 @@ bool ControllerHands<Dimension>::handle_axis(const SDL_ControllerAxisEvent& axis
       return true;
     case SDL_CONTROLLER_AXIS_LEFTX:
       left.stick.x() = stick_share(axis.value);
-      return left.trigger > kTouched;  // else it tilts the ground
+      return left.trigger > kTouched;  // otherwise it tilts the ground
     case SDL_CONTROLLER_AXIS_LEFTY:
       left.stick.y() = stick_share(axis.value);
       return left.trigger > kTouched;
@@ -73,7 +73,7 @@ bool ControllerHands<Dimension>::handle_axis(const SDL_ControllerAxisEvent& axis
   }
 }
 
-/// Of two dimensions the pad sets the direction of gravity.
+/// In two dimensions the pad sets the direction of gravity instead.
 template <int Dimension>
 bool ControllerHands<Dimension>::handle_pad(const SDL_ControllerButtonEvent& button) {
   if (Dimension == 2) return false;
@@ -110,7 +110,7 @@ void ControllerHands<Dimension>::move(Hand& hand, const Look& look,
   hand.at = (hand.at + step).cwiseMax(0.0f).cwiseMin(1.0f);
   const Vector2i pixel = hand.at.cwiseProduct(size).template cast<int>();
   if (hand.trigger >= kTakes && !hand.is_closed) {
-    hand.is_closed = true;  // what comes by later is not taken
+    hand.is_closed = true;  // so that it does not take what passes by later
     hand.pointer.take(pixel.x(), pixel.y(), look, events);
   } else if (hand.pointer.holds()) {
     hand.pointer.move_to(pixel.x(), pixel.y(), look, events);

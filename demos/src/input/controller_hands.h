@@ -1,5 +1,5 @@
 #pragma once
-// The user's two hands at a game controller: each has a trigger and a stick.
+// The user's two hands on a game controller: each has a trigger and a stick.
 
 #include <SDL.h>
 
@@ -16,26 +16,27 @@
 
 namespace softcell::demos {
 
-/// Where a controller's stick is, -1..1; 0 if nobody touches it.
+/// The deflection of a controller's stick, -1..1; 0 if nobody touches it.
 float stick_share(Sint16 value);
 
-/// A trigger that is touched shows its hand, which the stick of the same side moves over the window. Pressed, it takes what is there;
-/// let go, it throws it. In three dimensions the directional pad moves what is held farther and nearer. One thread uses it.
+/// Touching a trigger shows its hand, which the stick of the same side moves over the window. Pressing the trigger makes the hand take what
+/// is there; letting it go throws that. In three dimensions the directional pad moves the held thing farther and nearer. One thread uses
+/// it.
 template <int Dimension>
 class ControllerHands {
  public:
   using Pointer = std::conditional_t<Dimension == 2, MouseHand, MouseReach>;
 
-  static constexpr float kTouched = 0.05f, kTakes = 0.6f, kLetsGo = 0.4f;  ///< shares of a trigger's way
-  /// Heights of the window in a frame, when the stick is pushed all the way.
+  static constexpr float kTouched = 0.05f, kTakes = 0.6f, kLetsGo = 0.4f;  ///< fractions of the travel
+  /// Window heights per frame when the stick is pushed all the way.
   static constexpr float kSpeed = 1.2f / 60;
 
   /// @param mouse  how a pointer takes and moves things
   explicit ControllerHands(const Pointer& mouse);
 
-  /// @return true: the event is a hand's
+  /// @return true: a hand has used the event
   bool handle(const SDL_Event& event);
-  /// Appends what the hands do in a frame, and shows them.
+  /// Appends what the hands do in this frame, and shows them in `look`.
   void next_frame(Look& look, std::vector<InputEvent<Dimension>>& events);
   /// Each hand that holds something pins it.
   void pin(std::vector<InputEvent<Dimension>>& events) const;
@@ -43,7 +44,7 @@ class ControllerHands {
  private:
   struct Hand {
     Pointer pointer;
-    Eigen::Vector2f begins;  // shares of the window, where it appears
+    Eigen::Vector2f begins;  // where it appears, in fractions of the window
     Eigen::Vector2f at;
     Eigen::Vector2f stick{0, 0};
     float trigger = 0;
@@ -54,7 +55,7 @@ class ControllerHands {
   void move(Hand& hand, const Look& look, std::vector<InputEvent<Dimension>>& events) const;
 
   std::array<Hand, 2> hands_;       // left, right
-  float farther_ = 0, nearer_ = 0;  // 1: the pad is pressed so
+  float farther_ = 0, nearer_ = 0;  // 1: this side of the pad is pressed
 };
 
 extern template class ControllerHands<2>;

@@ -1,5 +1,5 @@
 #pragma once
-// The state of a run that events change: gravity, tilt, hands, pause.
+// The state of a run that events change: gravity, tilt, hands, time scale, substeps, pause.
 
 #include <algorithm>
 #include <optional>
@@ -11,17 +11,17 @@
 
 namespace softcell::demos {
 
-/// One thread uses it. It leaves to the simulation what only that can do: see apply().
+/// It leaves to the simulation what only the simulation can do: see apply(). One thread uses it.
 template <int Dimension>
 class Controls {
  public:
   using Event = InputEvent<Dimension>;
   using Vector = typename Event::Vector;
 
-  /// What a reset brings back, too.
+  /// The values that a reset also restores.
   struct Initial {
     Vector gravity = Vector::Zero();  ///< m/s^2
-    std::optional<Vector> tilt = {};  ///< as tilt()
+    std::optional<Vector> tilt = {};  ///< as for tilt()
     float time_scale = 1;
   };
   explicit Controls(const Initial& initial)
@@ -29,10 +29,9 @@ class Controls {
 
   /// Applies events in their order.
   /// @param bodies  the soft bodies: see Hands
-  /// @param world   has reset(), which restores bodies and world as they were at the beginning, home(i), which does so
-  ///                with soft body i, and hold(event), hold_rigid(event), move_hand(event) and release(hand) of hands
-  ///                that hold more than a particle, set_material(event, i)
-  ///                of soft body i, cut(event), pin(hand) and unpin(event)
+  /// @param world   has reset(), which restores bodies and world as they were at the beginning; home(i), which does the
+  ///                same for soft body i; hold(event), hold_rigid(event), move_hand(event) and release(hand) for hands that
+  ///                hold more than a particle; set_material(event, i) for soft body i; cut(event); pin(hand); unpin(event)
   template <class Bodies, class World>
   void apply(std::span<const Event> events, Bodies& bodies, World& world) {
     for (const Event& event : events) {
@@ -117,9 +116,8 @@ class Controls {
     }
   }
 
-  /// How many substeps are due in this frame, of which there are `substeps` in one of 1/60 s: none in a pause, all of them in a single step. In
-  /// slow motion there are frames without any; the substeps are as long as always, and bodies as stiff. Ends a single step, so call it once
-  /// per frame.
+  /// The number of substeps that are due in this frame: none in a pause, `substeps` in a single step. In slow motion some frames have none;
+  /// the substeps are as long as always, and bodies as stiff. It ends a single step, so call it once per frame. @param substeps  per 1/60 s
   int due_substeps(int substeps) {
     if (std::exchange(single_step_, false) && paused_) return substeps;
     if (paused_) return 0;
@@ -130,16 +128,16 @@ class Controls {
   }
 
   float time_scale() const { return time_scale_; }
-  /// Of a frame of 1/60 s. @param of_scene  while nobody has changed it
+  /// Substeps per 1/60 s. @param of_scene  their number unless somebody has changed it
   int substeps(int of_scene) const { return substeps_.value_or(of_scene); }
   const Vector& gravity() const { return gravity_; }           ///< m/s^2
-  const std::optional<Vector>& tilt() const { return tilt_; }  ///< radians; none: as the scene has it
+  const std::optional<Vector>& tilt() const { return tilt_; }  ///< radians; none: the scene's own
   const Hands<Dimension>& hands() const { return hands_; }
-  void forget_body(std::size_t body) { hands_.forget_body(body); }  ///< as Hands
+  void forget_body(std::size_t body) { hands_.forget_body(body); }  ///< see Hands
   template <class Follow>
   void follow_particles(const Follow& follow) {
     hands_.follow_particles(follow);
-  }  ///< as Hands
+  }  ///< see Hands
   bool paused() const { return paused_; }
 
  private:
@@ -160,8 +158,8 @@ class Controls {
   Vector gravity_;
   std::optional<Vector> tilt_;
   bool paused_ = false, single_step_ = false;
-  float time_scale_, due_ = 0;   // of a substep, what is due
-  std::optional<int> substeps_;  // none: as the scene has it
+  float time_scale_, due_ = 0;   // due_: the part of a substep that is due
+  std::optional<int> substeps_;  // none: the scene's
 };
 
 }  // namespace softcell::demos

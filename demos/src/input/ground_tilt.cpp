@@ -63,8 +63,8 @@ void GroundTilt::handle_axis(const SDL_ControllerAxisEvent& axis) {
   if (axis.axis == SDL_CONTROLLER_AXIS_LEFTY) stick_.y() = used;
 }
 
-/// An accelerometer at rest shows what holds it up: 9.8 m/s^2 along its own y when it lies flat; x is to the
-/// right and z towards the player. [SDL_sensor.h, "Accelerometer sensor"] documented
+/// An accelerometer at rest measures the force that holds it up: 9.8 m/s^2 along its own y when it lies flat; x is to the right and z
+/// towards the player. [SDL_sensor.h, "Accelerometer sensor"] documented
 void GroundTilt::handle_sensor(const SDL_ControllerSensorEvent& sensor) {
   if (sensor.sensor != SDL_SENSOR_ACCEL) return;
   const auto [x, y, z] = std::array{sensor.data[0], sensor.data[1], sensor.data[2]};

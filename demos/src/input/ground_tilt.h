@@ -1,6 +1,6 @@
 #pragma once
-// How the user tilts the ground of a scene of three dimensions: arrow keys, a controller's left stick, its
-// motion sensor. They add up.
+// The ways in which the user tilts the ground of a scene in three dimensions: arrow keys, a controller's left stick, and its motion sensor.
+// They add up.
 
 #include <SDL.h>
 
@@ -14,17 +14,17 @@ namespace softcell::demos {
 class GroundTilt {
  public:
   static constexpr float kMost = 0.35f;          ///< about either axis: 20 degrees
-  static constexpr float kMostInAFrame = 0.03f;  ///< however fast the user is
+  static constexpr float kMostInAFrame = 0.03f;  ///< limits how fast the tilt changes
 
   void handle(const SDL_Event& event);
 
-  /// The stick does something else now.
+  /// Call it when the stick starts to do something else.
   void let_go_of_stick() { stick_.setZero(); }
 
-  /// The ground is level again, until the user does something.
+  /// Makes the ground level again, until the user does something.
   void forget();
 
-  /// (about x, 0, about z) for the frame that begins. None: as in the frame before, or as the scene has it.
+  /// (about x, 0, about z) for the frame that begins. None: unchanged since the previous frame, or the scene's own.
   std::optional<Eigen::Vector3f> next_frame();
 
  private:

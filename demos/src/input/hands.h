@@ -1,5 +1,5 @@
 #pragma once
-// Hands that hold particles of soft bodies, in either dimension, and pull them along.
+// Hands that hold particles of soft bodies, in either dimension, and pull them.
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -30,7 +30,7 @@ class Hands {
   struct Particle {
     std::size_t body, particle;
   };
-  /// Of the event's body, or of every body, the particle nearest to the event's value. None: there is no such body.
+  /// The particle of the event's body, or of every body, that is nearest to the event's value. None: there is no such body.
   template <class Bodies>
   static std::optional<Particle> nearest_particle(const Event& event, const Bodies& bodies) {
     std::optional<Particle> nearest;
@@ -56,20 +56,20 @@ class Hands {
     std::erase_if(held_, [hand](const Held& held) { return held.hand == hand; });
   }
   void release_all() { held_.clear(); }
-  /// The body has broken, or is gone: its particles are others.
+  /// Call it when the body has broken or is gone, because its particles are then others.
   void forget_body(std::size_t body) {
     std::erase_if(held_, [body](const Held& held) { return held.body == body; });
   }
 
-  /// Bodies have broken. @param follow  takes the body and the particle that are held, changes them to those which they are now, and returns
-  /// whether they are there yet: a hand lets go of what has vanished
+  /// Call it when bodies have broken. @param follow  takes a held body and particle, changes them to the present ones, and returns whether
+  /// they still exist: a hand lets go of what has vanished
   template <class Follow>
   void follow_particles(const Follow& follow) {
     for (auto held = held_.begin(); held != held_.end();)
       held = follow(held->body, held->particle) ? held + 1 : held_.erase(held);
   }
 
-  /// A particle that is held, and `target`, where the hand is.
+  /// A held particle. `target` is where the hand is.
   struct Held {
     std::uint32_t hand;
     std::size_t body, particle;
@@ -77,8 +77,8 @@ class Hands {
   };
   const std::vector<Held>& held() const { return held_; }
 
-  /// Sets the velocity of each held particle so that it reaches its hand in kReachSeconds. Call it before each
-  /// step, because the rest of the body pulls the particle back in the meantime.
+  /// Sets the velocity of each held particle so that it reaches its hand in kReachSeconds. Call it before each step, because the rest of
+  /// the body pulls the particle back meanwhile.
   template <class Bodies>
   void pull(Bodies& bodies) const {
     for (const Held& held : held_) {

@@ -1,6 +1,6 @@
 #pragma once
-// What a hand at the mouse, a scene's script or a recording does to a simulation: a short list of plain data
-// for each frame. They are all the same to it.
+// What a hand at the mouse, a scene's script or a recording does to a simulation: a short list of plain data for each frame. The simulation
+// treats all three alike.
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -11,37 +11,38 @@
 namespace softcell::demos {
 
 enum class Action : std::uint8_t {
-  kGrab,        ///< hand: takes the particle nearest to `value` (m) of `body`; lets go of another
-  kMoveHand,    ///< hand: is at `value` (m) now; nothing when it holds nothing
-  kRelease,     ///< hand: lets go
+  kGrab,        ///< the hand takes the particle nearest to `value` (m) of `body`, and lets go of another
+  kMoveHand,    ///< the hand is at `value` (m) now; no effect if it holds nothing
+  kRelease,     ///< the hand lets go
   kPush,        ///< `value` (m/s) is added to all particles of `body`
   kGravity,     ///< `value` (m/s^2) is gravity from now on
-  kReset,       ///< everything is as it was at the beginning, gravity too; hands let go. A pause goes on.
+  kReset,       ///< restores the beginning, gravity included; hands let go. A pause goes on.
   kPause,       ///< time stands still
   kResume,      ///< time goes on
-  kSingleStep,  ///< during a pause: one frame
-  kHome,        ///< `body` is where it was at the beginning, at rest and in its own shape
+  kSingleStep,  ///< during a pause: simulates one frame
+  kHome,        ///< puts `body` where it was at the beginning, at rest and in its own shape
   kTilt,        ///< in 3D: the ground is tilted by `value` (radians) about x, then z, from now on; its y is 0
-  kHold,  ///< hand: holds soft body `body` at `value` (m), in 3D a point of its surface; lets go of another
-  kHoldRigid,  ///< hand: holds rigid body `body` of the scene at `value` (m), if it moves; lets go of another
-  // With a number, which is the first of `value`; what the number means is in kNumbers:
-  kTimeScale,  ///< how much time passes: 1 as on the clock, less is slow motion
-  kSubsteps,   ///< of a frame, from now on
+  kHold,        ///< the hand lets go, and holds soft body `body` at `value` (m), in 3D on its surface
+  kHoldRigid,   ///< the hand holds rigid body `body` of the scene at `value` (m), if it moves; likewise
+  // Actions with a number, which is the first of `value`; kNumbers has its range:
+  kTimeScale,  ///< how fast time passes: 1 as on the clock, less is slow motion
+  kSubsteps,   ///< per frame, from now on
   kAlpha,      ///< of `body`: see ppu::SoftBodySettings, for this and the next six
   kFrequency,
   kModulus,  ///< sets alpha
   kDamping,
   kFriction,
-  kYield,  ///< makes the body plastic, if it has few enough particles; 0: elastic
+  kYield,  ///< makes the body plastic, if it has few enough particles; 0 makes it elastic
   kCreep,  ///< of a plastic body
-  /// A blade that reaches from `value` (m) along `edge` (m) moves by `way` (m) and cuts `body` and its pieces. In 2D it is a tip, without edge.
+  /// A blade that reaches from `value` (m) along `edge` (m) moves by `way` (m), and cuts `body` and its pieces. In 2D it is a point without
+  /// an edge.
   kCut,
-  kPin,  ///< hand: the part of the soft body that it holds stays where it is in the world; nothing when it holds none
-  kUnpin,  ///< pins of `body` and its pieces are taken off
+  kPin,    ///< the part of a soft body that the hand holds stays where it is in the world, if there is one
+  kUnpin,  ///< takes the pins of `body` and its pieces off
 };
 inline constexpr int kActions = 25;
 
-/// What the number of an action may be.
+/// The range of an action's number.
 struct NumberRange {
   Action action;
   float low, high;
@@ -62,15 +63,14 @@ inline const NumberRange* number_of(Action action) {
   return found == kNumbers.end() ? nullptr : found;
 }
 
-/// For `body`: to grab or to hold, whichever has the nearest particle; else all.
+/// As `body`: for grabbing and holding, the body with the nearest particle; for other actions, all bodies.
 inline constexpr std::uint32_t kEveryBody = std::numeric_limits<std::uint32_t>::max();
-/// For `hand`: the user's, at the mouse, and the two at a controller. The hands of a script are numbered from 0, one for each
-/// drag.
+/// As `hand`: the user's hand at the mouse, and the two at a controller. The hands of a script are numbered from 0, one for each drag.
 inline constexpr std::uint32_t kUsersHand = std::numeric_limits<std::uint32_t>::max(),
                                kUsersLeftHand = kUsersHand - 1, kUsersRightHand = kUsersHand - 2;
 inline constexpr bool is_users_hand(std::uint32_t hand) { return hand >= kUsersRightHand; }
 
-/// Happens at the beginning of a frame. What an action does not use is 0. Dimension: 2 or 3.
+/// It happens at the beginning of a frame. Fields that the action does not use are 0. Dimension: 2 or 3.
 template <int Dimension>
 struct InputEvent {
   using Vector = Eigen::Matrix<float, Dimension, 1>;

@@ -18,7 +18,7 @@ namespace softcell::demos {
 
 struct RecordingFiles {
   std::optional<std::filesystem::path> record;  ///< where to write what happens
-  std::optional<std::filesystem::path> replay;  ///< a recording to do again, in place of the scene's script
+  std::optional<std::filesystem::path> replay;  ///< a recording to replay, in place of the scene's script
 };
 
 /// One thread uses it. Call in this order: the constructor, begin(), events_at() and record() for each frame,
@@ -28,7 +28,7 @@ class InputLog {
  public:
   using Event = InputEvent<Dimension>;
 
-  /// Reads the recording that is to be done again. @throws std::runtime_error  as read_recording().
+  /// Reads the recording that is to be replayed. @throws std::runtime_error  as read_recording().
   explicit InputLog(const RecordingFiles& files) : path_(files.record) {
     if (files.replay) {
       replay_ = read_recording<Dimension>(*files.replay);
@@ -41,8 +41,8 @@ class InputLog {
     return replay_ ? std::optional(replay_->scene) : std::nullopt;
   }
 
-  /// In a replay, removes the scene's script, because its events are in the recording. Opens the file of a new
-  /// recording now, so that a file that cannot be written ends the run at its beginning.
+  /// In a replay, removes the scene's script, because its events are in the recording. Opens the file of a new recording now, so that a
+  /// file that cannot be written ends the run at its beginning.
   /// @throws std::runtime_error  the replay is of another scene, or the file cannot be written.
   template <class SceneOfDimension>
   void begin(SceneOfDimension& scene) {
@@ -65,8 +65,7 @@ class InputLog {
     return replay_->frames;
   }
 
-  /// The recorded events of a frame; none if this is no replay. Ask for frames in order. Valid until the next
-  /// call.
+  /// The recorded events of a frame; none if this is no replay. Ask for the frames in order. Valid until the next call.
   std::span<const Event> events_at(std::int64_t frame) {
     events_.clear();
     if (!replay_) return events_;
@@ -79,8 +78,7 @@ class InputLog {
     return events_;
   }
 
-  /// Records the events at the beginning of a frame. Drops the whole recording if it has no room for them:
-  /// see require_room().
+  /// Records the events at the beginning of a frame. If the recording has no room for them, drops all of it: see require_room().
   void record(std::int64_t frame, std::span<const Event> events) {
     SC_ASSERT(frame >= record_.frames, "frame {} behind {} frames", frame, record_.frames);
     record_.frames = frame + 1;
@@ -100,7 +98,7 @@ class InputLog {
                              std::to_string(kMaxRecordedEvents) + " events; nothing is recorded");
   }
 
-  /// Writes the recording, if one is asked for; once. @throws std::runtime_error  it cannot be written.
+  /// Writes the recording once, if one is asked for. @throws std::runtime_error  it cannot be written.
   void save(std::uint64_t state_hash) {
     record_.state_hash = state_hash;
     if (!file_) return;
@@ -108,7 +106,7 @@ class InputLog {
     file_->commit();
   }
 
-  /// @throws std::runtime_error  the replay has reached the end of the recording in another state.
+  /// @throws std::runtime_error  the replay has reached the end of the recording, but in another state.
   void check() const {
     if (!replay_ || record_.frames != replay_->frames || record_.state_hash == replay_->state_hash) return;
     throw std::runtime_error(
@@ -130,12 +128,12 @@ class InputLog {
                              (Dimension == 3 ? ", and the --mesh and the cells that it had" : ""));
   }
 
-  std::optional<std::filesystem::path> path_;  // of what is recorded
-  // Shared by all copies, of which one saves. Null: dropped, or none is asked for.
+  std::optional<std::filesystem::path> path_;  // of the new recording
+  // All copies share it, and one of them saves. Null: the recording was dropped, or none is asked for.
   std::shared_ptr<base::WholeFile> file_;
   std::optional<Recording<Dimension>> replay_;
   std::string replay_name_;
-  std::size_t next_ = 0;  // event of the replay
+  std::size_t next_ = 0;  // the next event of the replay
   std::vector<Event> events_;
   Recording<Dimension> record_;
 };

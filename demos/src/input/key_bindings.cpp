@@ -8,7 +8,7 @@ namespace {
 
 constexpr auto kNoButton = SDL_CONTROLLER_BUTTON_INVALID;
 
-// The report's button to jump is the square, which SDL calls X.
+// The report has the square as the button to jump; SDL calls it X.
 constexpr std::array kBindings{
     KeyBinding{Command::kJump, SDLK_SPACE, SDL_CONTROLLER_BUTTON_X, "Space", "jump"},
     KeyBinding{Command::kHome, SDLK_BACKSPACE, SDL_CONTROLLER_BUTTON_BACK, "Backspace",
@@ -46,7 +46,7 @@ constexpr std::array kBindings{
     KeyBinding{Command::kQuit, SDLK_ESCAPE, kNoButton, "Esc", "the end"},
 };
 
-/// Keys that mean the same: plus without shift, and on the number pad.
+/// Maps keys with the same meaning to one: plus without shift, and keys of the number pad.
 SDL_Keycode same_as(SDL_Keycode key) {
   switch (key) {
     case SDLK_EQUALS:

@@ -1,5 +1,5 @@
 #pragma once
-// Which key and which button of a controller does what: for the input, and for the help page.
+// The keys and controller buttons, and what each does: used by the input and by the help page.
 
 #include <SDL.h>
 
@@ -49,10 +49,10 @@ struct KeyBinding {
 
 std::span<const KeyBinding> key_bindings();
 
-/// As the makers of controllers print it: Xbox, and where it has another name, PlayStation. Null: no button.
+/// The button's name as makers of controllers print it: that of Xbox, then that of PlayStation if it differs. Null: no button.
 const char* button_name(SDL_GameControllerButton button);
 
-/// What an event asks for: a key or button that goes down. None: nothing, or it is no such event.
+/// The command that an event asks for: the event is a key or button that goes down. None: the event asks for no command.
 std::optional<Command> command_of(const SDL_Event& event, int dimension);
 
 }  // namespace softcell::demos

@@ -74,7 +74,7 @@ void Knife<Dimension>::cut(const Look& look, std::vector<InputEvent<Dimension>>&
 template class Knife<2>;
 template class Knife<3>;
 
-/// The parallelogram between both rays lies in the plane that one sees as a line; it is longer than all that is drawn.
+/// The parallelogram between both rays is in the plane that the user sees as a line; it is longer than everything that is drawn.
 Knife<3> knife_3d(std::function<render::Camera(const Look&)> eye, int width, int height) {
   return {[eye = std::move(eye)](const Look& look, const Knife<3>::Stroke& stroke) {
             const render::Camera camera = eye(look);

@@ -14,12 +14,12 @@
 
 namespace softcell::demos {
 
-/// While Look::knife is on, the left button draws a stroke, which is seen meanwhile and cuts when the button is let go. It cuts all soft
-/// bodies that are seen under it, in three dimensions also those that others hide.
+/// While Look::knife is on, dragging with the left button draws a stroke; letting the button go cuts. It cuts all soft bodies that are seen
+/// under the stroke, in three dimensions also those hidden behind others.
 template <int Dimension>
 class Knife {
  public:
-  static constexpr int kShortest = 4;  ///< a stroke, in the units of SDL's mouse; a click cuts nothing
+  static constexpr int kShortest = 4;  ///< shortest stroke, in the units of SDL's mouse; a click cuts nothing
   struct Point {
     int x = 0, y = 0;
   };
@@ -28,16 +28,16 @@ class Knife {
     Point from, to;
     int width = 1, height = 1;
   };
-  /// The way of the blade: Action::kCut without a body.
+  /// Makes the path of the blade from a stroke: Action::kCut without a body.
   using Blade = std::function<InputEvent<Dimension>(const Look&, const Stroke&)>;
 
-  /// Cuts nothing.
+  /// A knife that cuts nothing.
   Knife() = default;
   /// @param width, height  of the window, in the units in which SDL gives the mouse
   Knife(Blade blade, int width, int height);
 
-  /// Appends what the event means.
-  /// @return true: the event was the knife's
+  /// Appends the events that it makes of this one.
+  /// @return true: the knife has used the event
   bool handle(const SDL_Event& event, Look& look, std::vector<InputEvent<Dimension>>& events);
 
  private:
@@ -50,7 +50,7 @@ class Knife {
   Point to_;
 };
 
-/// @param eye  from where the scene is seen now
+/// @param eye  gives the camera from which the scene is seen now
 Knife<3> knife_3d(std::function<render::Camera(const Look&)> eye, int width, int height);
 Knife<2> knife_2d(const Camera2d& camera, int width, int height);
 

@@ -1,5 +1,5 @@
 #pragma once
-// A pointer, mostly the mouse, as the user's hand in a scene of two dimensions.
+// A pointer, usually the mouse, as the user's hand in a scene in two dimensions.
 
 #include <SDL.h>
 
@@ -16,10 +16,10 @@
 
 namespace softcell::demos {
 
-/// The left button takes what is under the mouse, which then follows it; letting go throws it.
+/// Pressing the left button takes what is under the mouse, which then follows it; letting the button go throws it.
 class MouseHand {
  public:
-  /// How a hand takes what is at a point of the scene, all but the hand. None: there is nothing.
+  /// Makes the event by which a hand takes what is at a point of the scene; all of it but the hand. None: there is nothing.
   using Pick = std::function<std::optional<InputEvent<2>>(const Eigen::Vector2f&)>;
 
   /// @param width, height  of the window, in the units in which SDL gives the mouse
@@ -28,12 +28,12 @@ class MouseHand {
     SC_ASSERT(pick_ && width > 0 && height > 0, "a picture of {} by {} pixels", width, height);
   }
 
-  /// Appends what the event means. Of moves that follow one another, the last counts.
+  /// Appends the events that it makes of this one. Of moves that follow one another, only the last counts.
   void handle(const SDL_Event& event, const Look& look, std::vector<InputEvent<2>>& events);
 
   // For pointers other than the mouse, at (x, y) of the window.
 
-  /// The same for another hand of the user, which holds nothing.
+  /// The same for another hand of the user, which holds nothing yet.
   MouseHand for_hand(std::uint32_t hand) const;
   Eigen::Vector2i window_size() const { return {width_, height_}; }
   bool holds() const { return holds_; }
@@ -41,7 +41,7 @@ class MouseHand {
   bool take(int x, int y, const Look& look, std::vector<InputEvent<2>>& events);
   /// @pre holds()
   void move_to(int x, int y, const Look& look, std::vector<InputEvent<2>>& events);
-  /// What it holds stays where it is. @pre holds()
+  /// Pins what it holds where it is. @pre holds()
   void pin(std::vector<InputEvent<2>>& events) const;
   /// @pre holds()
   void let_go(std::vector<InputEvent<2>>& events);

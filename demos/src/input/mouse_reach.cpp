@@ -9,7 +9,7 @@
 namespace softcell::demos {
 namespace {
 
-constexpr float kFartherPerNotch = 1.05f;  // of the wheel, turned away from the user
+constexpr float kFartherPerNotch = 1.05f;  // per notch of the wheel, turned away from the user
 
 }  // namespace
 

@@ -1,6 +1,5 @@
 #pragma once
-// A pointer, mostly the mouse, as the user's hand in three dimensions: it moves what it has taken in the plane that faces the
-// eye.
+// A pointer, usually the mouse, as the user's hand in three dimensions: it moves what it has taken in a plane parallel to the picture.
 
 #include <SDL.h>
 
@@ -15,27 +14,27 @@
 
 namespace softcell::demos {
 
-/// The left button takes what is under the mouse, which then follows it; letting go throws it. The wheel moves what is held
-/// nearer and farther. Where there is nothing to take, the mouse is left to others.
+/// Pressing the left button takes what is under the mouse, which then follows it; letting the button go throws it. The wheel moves the held
+/// thing nearer and farther. Where there is nothing to take, it leaves the mouse events to others.
 class MouseReach {
  public:
-  /// From where the scene is seen now.
+  /// Gives the camera from which the scene is seen now.
   using Eye = std::function<render::Camera(const Look&)>;
-  /// How a hand takes what one sees along a ray, all but the hand. None: nothing that can be taken.
+  /// Makes the event by which a hand takes what one sees along a ray; all of it but the hand. None: there is nothing that can be taken.
   using Pick = std::function<std::optional<InputEvent<3>>(const Ray&)>;
 
-  /// Reaches nothing.
+  /// A hand that reaches nothing.
   MouseReach() = default;
   /// @param width, height  of the window, in the units in which SDL gives the mouse
   MouseReach(Eye eye, Pick pick, int width, int height);
 
-  /// Appends what the event means. Of moves that follow one another, the last counts.
-  /// @return true: the event was the hand's
+  /// Appends the events that it makes of this one. Of moves that follow one another, only the last counts.
+  /// @return true: the hand has used the event
   bool handle(const SDL_Event& event, const Look& look, std::vector<InputEvent<3>>& events);
 
   // For pointers other than the mouse, at (x, y) of the window.
 
-  /// The same for another hand of the user, which holds nothing.
+  /// The same for another hand of the user, which holds nothing yet.
   MouseReach for_hand(std::uint32_t hand) const;
   Eigen::Vector2i window_size() const { return {width_, height_}; }
   bool holds() const { return depth_.has_value(); }
@@ -45,7 +44,7 @@ class MouseReach {
   void move_to(int x, int y, const Look& look, std::vector<InputEvent<3>>& events);
   /// @param notches  of the wheel; below 0: nearer  @pre holds()
   void move_away(float notches, const Look& look, std::vector<InputEvent<3>>& events);
-  /// What it holds stays where it is. @pre holds()
+  /// Pins what it holds where it is. @pre holds()
   void pin(std::vector<InputEvent<3>>& events) const;
   /// @pre holds()
   void let_go(std::vector<InputEvent<3>>& events);

@@ -28,7 +28,7 @@ constexpr std::size_t kMaxSceneName = 255;
 constexpr std::size_t kMaxLine = 220;
 constexpr std::size_t kMaxFile = kMaxRecordedEvents * kMaxLine + 4096;
 
-/// How an action is written: its name, then what it uses.
+/// How an action is written: its name, then the fields that it uses.
 struct ActionSyntax {
   std::string_view name;
   bool hand = false, body = false, value = false, blade = false;
@@ -64,7 +64,7 @@ constexpr std::array<ActionSyntax, kActions> kSyntax{{
     {.name = "unpin", .body = true},
 }};
 
-/// A number of 32 bits that has a name.
+/// A 32-bit number that has a name.
 struct NamedNumber {
   std::string_view name;
   std::uint32_t number;
@@ -101,7 +101,7 @@ void append_line(std::string& text, const RecordedEvent<Dimension>& recorded) {
   text += '\n';
 }
 
-/// Takes the text apart: lines, and in a line words with one space between them.
+/// Splits the text into lines, and a line into words with one space between them.
 class Reader {
  public:
   explicit Reader(std::string_view text) : text_(text) {}
@@ -110,7 +110,7 @@ class Reader {
     throw std::runtime_error(fmt::format("line {}: {}", line_number_, what));
   }
 
-  /// Where the line begins that next_line() took last.
+  /// Where the line that next_line() read last begins.
   std::size_t line_begin() const { return line_begin_; }
   bool at_end() const { return next_ == text_.size(); }
 
@@ -159,7 +159,7 @@ class Reader {
     return value;
   }
 
-  /// @param names  of the largest numbers, the last of which is the smallest
+  /// @param names  of the largest numbers; the last of them is the smallest
   std::uint32_t named_number(std::string_view what, std::span<const NamedNumber> names) {
     for (const auto& [name, number] : names) {
       if (line_ == name || line_.starts_with(std::string(name) + ' ')) {
@@ -183,7 +183,7 @@ class Reader {
     if (!line_.empty()) refuse(fmt::format("'{}' was not expected here", quotable(line_)));
   }
 
-  /// What stands in the file, fit for a sentence.
+  /// Text from the file in a form that fits into a message.
   static std::string quotable(std::string_view found) {
     std::string text(found.substr(0, 40));
     std::replace_if(

@@ -1,6 +1,6 @@
 #pragma once
-// What happened to a scene, frame by frame: written by --record, done again by --replay.
-// docs/guide/playing.md describes the file.
+// A record of what happened to a scene, frame by frame: --record writes it, --replay does it again. docs/guide/playing.md describes the
+// file.
 
 #include <cstdint>
 #include <filesystem>
@@ -12,13 +12,13 @@
 
 namespace softcell::demos {
 
-/// Longer ones are neither written nor read.
+/// Longer recordings are neither written nor read.
 inline constexpr std::int64_t kMaxRecordedFrames = 10'000'000;  // 46 hours
 inline constexpr std::size_t kMaxRecordedEvents = 2'000'000;
 
 template <int Dimension>
 struct RecordedEvent {
-  std::int64_t frame = 0;  ///< at whose beginning it happens, counted from 0
+  std::int64_t frame = 0;  ///< counted from 0; the event happens at its beginning
   InputEvent<Dimension> event;
 
   bool operator==(const RecordedEvent&) const = default;
@@ -29,9 +29,9 @@ template <int Dimension>
 struct Recording {
   std::string scene;             ///< a recordable_name()
   std::uint64_t scene_hash = 0;  ///< see scene_hash.h
-  std::int64_t frames = 0;       ///< that were simulated, pauses included
-  std::uint64_t state_hash = 0;  ///< after the last of them
-  /// By frame, each below `frames`; within a frame in their order.
+  std::int64_t frames = 0;       ///< simulated frames, pauses included
+  std::uint64_t state_hash = 0;  ///< after the last frame
+  /// Sorted by frame, each below `frames`; within a frame in the order in which they happened.
   std::vector<RecordedEvent<Dimension>> events = {};
 
   bool operator==(const Recording&) const = default;
@@ -44,18 +44,17 @@ std::string to_text(const Recording<Dimension>& recording);
 template <int Dimension>
 Recording<Dimension> parse_recording(std::string_view text);
 
-/// A scene's name as recordings have it: without control characters, and of at most 255 bytes.
+/// The form in which recordings have a scene's name: without control characters, at most 255 bytes.
 std::string recordable_name(std::string_view name);
 
-/// Of all lines before the last, which carries it.
+/// The checksum of all lines before the last, which contains it.
 std::uint64_t recording_checksum(std::string_view lines);
 
-/// The file appears when it is whole. @throws std::runtime_error  it cannot be written; the sentence names
-/// it.
+/// The file appears only when it is complete. @throws std::runtime_error  it cannot be written; the message names it.
 template <int Dimension>
 void write_recording(const std::filesystem::path& path, const Recording<Dimension>& recording);
 
-/// @throws std::runtime_error  as parse_recording(), or it cannot be read; the sentence names the file.
+/// @throws std::runtime_error  as parse_recording(), or it cannot be read; the message names the file.
 template <int Dimension>
 Recording<Dimension> read_recording(const std::filesystem::path& path);
 

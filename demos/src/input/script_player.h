@@ -13,8 +13,8 @@
 
 namespace softcell::demos {
 
-/// Frames last 1/60 s and are counted from 0; an event of the script happens at the frame nearest to its time.
-/// One thread uses it; the script outlives it.
+/// Frames last 1/60 s and are counted from 0; an event of the script happens at the frame nearest to its time. One thread uses it; the
+/// script must outlive it.
 template <int Dimension>
 class ScriptPlayer {
  public:
@@ -49,8 +49,8 @@ class ScriptPlayer {
  private:
   static std::int64_t frame_at(float time) { return std::llround(double{time} * 60); }
 
-  /// Pauses may touch and overlap: time continues where the last of them ends. A pause that ends at the frame at
-  /// which it begins has no effect.
+  /// Pauses may touch and overlap: time goes on where the last of them ends. A pause that ends at the frame at which it begins has no
+  /// effect.
   void add_pauses(std::int64_t frame) {
     bool begins = false, ends = false, covered = false;
     for (const ScriptedPause& pause : script_.pauses) {

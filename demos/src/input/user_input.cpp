@@ -143,7 +143,7 @@ void UserInput<Dimension>::do_command(Command command) {
       set_gravity(Vector::Unit(1) * -strength);
       break;
     default:
-      break;  // the window's
+      break;  // WindowInput handles it
   }
 }
 

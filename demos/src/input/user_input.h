@@ -1,6 +1,5 @@
 #pragma once
-// Turns the events of a window into events of the next frame, a view, and requests (quit, next scene). Works
-// without a window, for tests.
+// Turns the events of a window into events of the next frame, a view, and requests (quit, next scene). Works without a window, for tests.
 
 #include <SDL.h>
 
@@ -23,34 +22,34 @@
 
 namespace softcell::demos {
 
-/// What does not depend on the number of dimensions. Used by one thread.
+/// The part that does not depend on the number of dimensions. Used by one thread.
 class WindowInput {
  public:
   explicit WindowInput(int views) : views_(views) { SC_ASSERT(views > 0, "{} views", views); }
   virtual ~WindowInput() = default;
 
   virtual void handle(const SDL_Event& event) = 0;
-  /// As if the user had pressed its key.
+  /// Does what the command's key would do.
   virtual void do_now(Command command) = 0;
-  /// An action with a number: see kNumbers. Of changes of one thing in a frame the last counts.
+  /// Appends an action with a number: see kNumbers. If one thing changes several times in a frame, the last change counts.
   virtual void change(Action action, std::uint32_t body, float value) = 0;
-  /// Gravity's direction stays. @param strength  m/s^2, not negative
+  /// Keeps the direction of gravity. @param strength  m/s^2, not negative
   virtual void set_strength_of_gravity(float strength) = 0;
 
   const Look& look() const { return look_; }
   void set_look(const Look& look) { look_ = look; }
-  /// Has a camera that follows a body come nearer to where it should be. @param wanted  metres, of Look::followed
+  /// Moves a camera that follows a body nearer to where it should be. @param wanted  metres, value of Look::followed
   void follow_body(const Eigen::Vector3f& wanted) {
-    constexpr float kPartOfWay = 0.12f;  // in a frame: what shakes the body does not shake the picture
+    constexpr float kPartOfWay = 0.12f;  // per frame: the picture does not shake when the body does
     look_.followed += kPartOfWay * (wanted - look_.followed);
   }
   bool wants_to_quit() const { return quit_; }
   bool wants_next_scene() const { return next_scene_; }
-  /// Whether the scene is to be saved; asking forgets it.
+  /// Whether the user has asked to save the scene. Reading it clears the request.
   bool take_save() { return std::exchange(save_, false); }
-  /// Whether the body that was held last is to be removed; asking forgets it.
+  /// Whether the user has asked to remove the body that was held last. Reading it clears the request.
   bool take_remove() { return std::exchange(remove_, false); }
-  /// Whether hands have pinned what they hold; asking forgets it.
+  /// Whether hands have pinned what they hold. Reading it clears this.
   bool take_pinned() { return std::exchange(pinned_, false); }
 
  protected:
@@ -65,8 +64,8 @@ class WindowInput {
   bool quit_ = false, next_scene_ = false, save_ = false, remove_ = false;
 };
 
-/// The pointing devices: the mouse, which is a hand or a knife, and in three dimensions what tilts the ground. There a mouse that holds
-/// nothing moves the camera.
+/// The pointing devices: the mouse, which is a hand or a knife, and in three dimensions the controls that tilt the ground. There the mouse
+/// moves the camera while it holds nothing.
 template <int Dimension>
 struct Pointing;
 template <>
@@ -89,14 +88,14 @@ class UserInput final : public WindowInput {
   using Vector = typename Event::Vector;
 
   static constexpr float kJumpSpeed = 5;         ///< m/s
-  static constexpr float kGravityStep = 1;       ///< m/s^2, of one key press
+  static constexpr float kGravityStep = 1;       ///< m/s^2 per key press
   static constexpr float kMostGravity = 1000;    ///< m/s^2
-  static constexpr float kUsualGravity = 9.81f;  ///< m/s^2, where there was none
+  static constexpr float kUsualGravity = 9.81f;  ///< m/s^2, when gravity is switched on and there was none
 
   UserInput(int views, const Pointing<Dimension>& pointing)
       : WindowInput(views), pointing_(pointing), hands_(pointing.hand) {}
 
-  /// What the simulation has become: keys that change gravity or pause go on from there.
+  /// Takes over the state of the simulation: keys that change gravity or pause start from there.
   void follow(const Vector& gravity, bool paused);
 
   void handle(const SDL_Event& event) override;
@@ -108,7 +107,7 @@ class UserInput final : public WindowInput {
     set_gravity(gravity_when_on_.normalized() * strength);
   }
 
-  /// What has been done since the frame before. Good until the next call.
+  /// The events since the previous frame. Valid until the next call.
   std::span<const Event> next_frame();
 
  private:
@@ -120,7 +119,7 @@ class UserInput final : public WindowInput {
   Pointing<Dimension> pointing_;
   ControllerHands<Dimension> hands_;
   Vector gravity_ = Vector::Unit(1) * -kUsualGravity;
-  Vector gravity_when_on_ = gravity_;  // not 0: what "on" goes back to
+  Vector gravity_when_on_ = gravity_;  // not 0: gravity when it is switched on again
   bool paused_ = false;
   std::vector<Event> coming_, frame_;
 };

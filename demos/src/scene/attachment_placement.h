@@ -1,5 +1,5 @@
 #pragma once
-// What soft bodies of a scene hold on to, in two dimensions and three.
+// The attachments of a scene's soft bodies, in two dimensions and three.
 
 #include <Eigen/Core>
 #include <array>
@@ -13,16 +13,16 @@
 
 namespace softcell::demos {
 
-/// A patch of a soft body is held to another one, to a rigid body or to the world.
+/// Attaches a patch of a soft body to another soft body, to a rigid body or to the world.
 template <int kDimension>
 struct AttachmentPlacement {
   using Vector = Eigen::Vector<float, kDimension>;
 
-  std::string described;             ///< where, for messages: "arena.toml:12:1: attach 2"
+  std::string described;             ///< where it is written, for messages: "arena.toml:12:1: attach 2"
   std::size_t body = 0;              ///< number of the soft body
-  std::optional<std::size_t> other;  ///< of another one
-  std::optional<std::size_t> box;    ///< or of one of Scene::boxes, in three dimensions
-  std::optional<std::size_t> rigid;  ///< or of one of the scene's rigid_bodies
+  std::optional<std::size_t> other;  ///< number of the soft body that it is attached to
+  std::optional<std::size_t> box;    ///< or number in Scene::boxes, in three dimensions
+  std::optional<std::size_t> rigid;  ///< or number in the scene's rigid_bodies
   Vector at = Vector::Zero();        ///< the middle of the patch
   float radius = 0;                  ///< of the patch
   Vector other_at = Vector::Zero();  ///< of the patch of the other soft body

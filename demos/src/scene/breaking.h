@@ -12,20 +12,21 @@
 
 namespace softcell::demos {
 
-/// Where a body that breaks is weaker, or stronger: cells whose middles are in a slab about a plane, in two dimensions in a strip about a line.
+/// Makes a body that breaks weaker or stronger in a slab: in the cells whose centres lie within the slab about a plane, in two dimensions
+/// within a strip about a line.
 template <int Dimension>
 struct StrengthSlab {
   using Vector = Eigen::Vector<float, Dimension>;
-  /// Metres, in the coordinates of the body's mesh; in two dimensions from the middle of its cells.
+  /// Metres, in the coordinates of the body's mesh; in two dimensions from the centre of its cells.
   Vector point = Vector::Zero();
   Vector normal = Vector::Unit(1);  ///< of any length but 0
   float thickness = 0;              ///< metres
-  float strength = 1;               ///< by which the limits of its fracture are multiplied, 0 or above
+  float strength = 1;               ///< a factor on the body's fracture limits, 0 or above
 
   bool operator==(const StrengthSlab&) const = default;
 };
 
-/// Of several slabs the weakest counts; 1 where there is none. @param at  metres
+/// The factor at a point: that of the weakest slab around it; 1 where there is none. @param at  metres
 template <int Dimension>
 float strength_at(const std::vector<StrengthSlab<Dimension>>& slabs,
                   const Eigen::Vector<float, Dimension>& at) {
@@ -39,7 +40,7 @@ float strength_at(const std::vector<StrengthSlab<Dimension>>& slabs,
   return least;
 }
 
-/// A plane or a stroke that cuts a soft body, and all of its pieces; in two dimensions a line or a stretch of one.
+/// A plane or a stroke that cuts a soft body and all of its pieces; in two dimensions a line or a segment of one.
 template <int Dimension>
 struct ScriptedCut {
   float time = 0;        ///< seconds

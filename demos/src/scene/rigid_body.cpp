@@ -8,7 +8,7 @@
 namespace softcell::demos {
 namespace {
 
-/// Between two stops: slow at both.
+/// Interpolates between two stops, slowly at both ends.
 double eased(double share) { return share * share * (3 - 2 * share); }
 
 Motion::Stop stop_at(const std::vector<Motion::Stop>& stops, double time) {

@@ -13,26 +13,26 @@
 
 namespace softcell::demos {
 
-/// How the scene moves a rigid body that nothing else moves, from where it is at the beginning.
+/// How the scene moves a rigid body that nothing else moves, starting from its place at the beginning.
 struct Motion {
-  /// A moment at which the body is somewhere. It goes from one to the next smoothly, at rest at both.
+  /// Where the body is at a moment. Between two stops it moves smoothly, and it is at rest at both.
   struct Stop {
     float time = 0;                   ///< seconds, ascending
-    Eigen::Vector3f offset{0, 0, 0};  ///< metres, from where it is at the beginning
-    float angle = 0;                  ///< radians about `axis`, from how it is at the beginning
+    Eigen::Vector3f offset{0, 0, 0};  ///< metres, from its place at the beginning
+    float angle = 0;                  ///< radians about `axis`, from its orientation at the beginning
   };
   Eigen::Vector3f axis{0, 1, 0};   ///< of unit length, through the body's position
-  float spin = 0;                  ///< rad/s about the axis, all the time
-  Eigen::Vector3f swing{0, 0, 0};  ///< metres: it goes to and fro, as far as this to either side
+  float spin = 0;                  ///< rad/s about the axis, always
+  Eigen::Vector3f swing{0, 0, 0};  ///< metres: it moves to and fro, this far to either side
   float period = 1;                ///< seconds, of the swing
-  std::vector<Stop> stops;         ///< the first is at the beginning if no other is
+  std::vector<Stop> stops;         ///< the body is at offset 0 at time 0 if no stop is there
 };
 
 struct RigidPart {
   ppu::RigidShape shape;
   render::Colour colour{0.8f, 0.8f, 0.8f};
 
-  /// Where the shape is in the body's frame.
+  /// The pose of the shape in the body's frame.
   Eigen::Matrix4f place() const {
     Eigen::Matrix4f place = Eigen::Matrix4f::Identity();
     place.topLeftCorner<3, 3>() = shape.rotation.toRotationMatrix();
@@ -52,13 +52,13 @@ struct RigidBody {
   std::optional<Motion> motion;
 };
 
-/// Two rigid bodies turn about an axis against each other. Of Scene::rigid_bodies, by their numbers.
+/// A hinge: two rigid bodies turn against each other about an axis. Refers to Scene::rigid_bodies by number.
 struct Joint {
   std::size_t a = 0, b = 0;
   Eigen::Vector3f point{0, 0, 0};  ///< metres, at the beginning
   Eigen::Vector3f axis{1, 0, 0};   ///< of unit length
-  float speed = 0;                 ///< rad/s, of b against a: what its motor wants
-  float torque = 0;                ///< N m, of its motor; 0: it has none
+  float speed = 0;                 ///< rad/s, of b relative to a: what the motor aims at
+  float torque = 0;                ///< N m, most of the motor; 0: there is no motor
 };
 
 /// Where a body is.
@@ -67,7 +67,7 @@ struct Placement {
   Eigen::Quaternionf rotation = Eigen::Quaternionf::Identity();
 };
 
-/// Where the scene moves a body, with the same bits on every host. @param time  seconds since the beginning  @pre body.motion
+/// The place to which the scene moves a body, with the same bits on every host. @param time  seconds since the beginning  @pre body.motion
 Placement placement_at(const RigidBody& body, double time);
 
 }  // namespace softcell::demos

@@ -1,6 +1,6 @@
 #pragma once
-// A scene as plain data: what is in the world, how it looks, and what happens. Shared by the demo, its tests
-// and benchmarks. Metres, kilograms, seconds; y is up.
+// A scene as plain data: what is in the world, how it looks, and what happens. The demo, its tests and the benchmarks use it. Metres,
+// kilograms, seconds; y is up.
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -28,15 +28,15 @@ namespace softcell::demos {
 
 struct SoftBodyPlacement {
   std::string name;
-  std::string described;  ///< where, for messages: "arena.toml:12:1: soft body 3"
+  std::string described;  ///< where it is written, for messages: "arena.toml:12:1: soft body 3"
   ppu::TriangleMesh mesh;
   ppu::SoftBodySettings settings;
-  Eigen::Vector3f position{0, 0, 0};  ///< where the mesh's own origin goes
-  /// rad/s: how fast its two ends along x turn about x at the beginning, against each other.
+  Eigen::Vector3f position{0, 0, 0};  ///< of the mesh's own origin
+  /// rad/s: the two ends along x turn about x against each other this fast at the beginning.
   float twist = 0;
   render::Colour colour{0.8f, 0.8f, 0.8f};
-  bool own_materials = false;  ///< the mesh's materials are drawn, where it has any, in place of `colour`
-  std::vector<StrengthSlab<3>> strengths = {};  ///< of several slabs the weakest counts
+  bool own_materials = false;  ///< draw the mesh's own materials, where it has any, instead of `colour`
+  std::vector<StrengthSlab<3>> strengths = {};  ///< the weakest slab counts
 };
 
 struct RigidBox {
@@ -47,7 +47,7 @@ struct RigidBox {
   render::Colour colour{0.8f, 0.8f, 0.8f};
   float opacity = 1;
   render::Pattern pattern = render::Pattern::plain;
-  bool wall = false;  ///< one of the framework's: glass where it stands between the camera and the scene
+  bool wall = false;  ///< a wall of the framework: glass while it stands between the camera and the scene
 };
 
 /// A convex shape that does not move.
@@ -55,12 +55,11 @@ struct Obstacle {
   ppu::TriangleMesh mesh;
   Eigen::Vector3f position{0, 0, 0};
   render::Colour colour{0.8f, 0.8f, 0.8f};
-  bool own_materials = false;  ///< as of a soft body
+  bool own_materials = false;  ///< as for a soft body
 };
 
-/// The ground tilts about the x and z axes: angle(t) = amplitude sin(2 pi t / period), with the tilt growing
-/// over the first seconds. The world stays in the ground's frame, in which gravity turns; the camera turns
-/// with it.
+/// The ground tilts about the x and z axes: angle(t) = amplitude sin(2 pi t / period), with the tilt growing over the first seconds. The
+/// world stays in the ground's frame, in which the direction of gravity turns; the camera turns with it.
 struct TiltScript {
   float amplitude_x = 0, amplitude_z = 0;  ///< radians
   float period_x = 1, period_z = 1;        ///< seconds
@@ -85,8 +84,8 @@ struct Scene {
   float friction = 0.6f;
   float restitution = 0;                                       ///< 0..1, of rigid bodies
   int substeps = 2;                                            ///< of a frame of 1/60 s
-  ppu::ContactMethod contacts = ppu::ContactMethod::kSurface;  ///< unless the user wants another
-  bool sleep = false;  ///< soft bodies fall asleep when they have come to rest
+  ppu::ContactMethod contacts = ppu::ContactMethod::kSurface;  ///< the user may choose another
+  bool sleep = false;  ///< soft bodies that have come to rest fall asleep
   int frames = 300;    ///< how long the scene is worth watching without a user
   render::Camera camera;
   render::Light light;
@@ -94,9 +93,9 @@ struct Scene {
   std::vector<ScriptedCut<3>> cuts;
   std::vector<int> pictures;                 ///< frames worth a picture, ascending
   std::vector<std::filesystem::path> files;  ///< that it was read from: nothing may be written there
-  std::vector<std::string> notes;  ///< for the user, a sentence each: what of its meshes was not read
+  std::vector<std::string> notes;  ///< for the user, a sentence each: parts of meshes that were not read
   std::shared_ptr<const Beginning<3>> begin;      ///< null: bodies begin at rest in their own shape
-  std::shared_ptr<const SceneDocument> document;  ///< that it was read from, to be saved again; null: none
+  std::shared_ptr<const SceneDocument> document;  ///< that it was read from, for saving; null: none
 };
 
 }  // namespace softcell::demos

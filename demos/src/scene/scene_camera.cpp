@@ -15,10 +15,10 @@ namespace {
 using Eigen::Matrix3f;
 using Eigen::Vector3f;
 
-// Sines of the lowest and highest place of the eye above the horizon of what it looks at: 0.03, -1.5 and 1.5 radians.
+// Sines of the lowest and highest elevation of the eye above the target's horizon: 0.03, -1.5 and 1.5 radians.
 constexpr float kLowest = 0.03f, kLowestOfAll = -0.9975f, kHighest = 0.9975f;
 
-/// Eye and target in the ground's frame. What tilts there is the observer.
+/// Eye and target in the ground's frame, in which it is the observer that tilts.
 render::Camera tilted(render::Camera camera, const Matrix3f& tilt) {
   const Matrix3f to_ground = tilt.transpose();
   camera.eye = to_ground * camera.eye;
@@ -37,14 +37,14 @@ Vector3f half_size(const ppu::RigidShape& shape) {
 
 render::Camera moved_by(render::Camera camera, const Look& look) {
   const Vector3f shift = look.moved + look.followed;
-  if (look.turn != 0 || look.rise != 0 || look.distance != 1) {  // else it is the scene's own, to the bit
+  if (look.turn != 0 || look.rise != 0 || look.distance != 1) {  // else it is the scene's own, bit for bit
     const Vector3f from_target = camera.eye - camera.target;
     const double distance = double{from_target.norm()};
     const double x = double{from_target.x()}, y = double{from_target.y()}, z = double{from_target.z()};
     const double level = std::sqrt(x * x + z * z);
     SC_ASSERT(distance > 0 && look.distance > 0, "a camera {} m from its target, {} times as far away",
               distance, look.distance);
-    // Turned and raised without an arc: the same bits on every host.
+    // The rotation uses no inverse trigonometric function, so that it gives the same bits on every host.
     const double st = ppu::sine(double{look.turn}), ct = ppu::cosine(double{look.turn});
     const double sr = ppu::sine(double{look.rise}), cr = ppu::cosine(double{look.rise});
     const double east = level > 0 ? x / level : 0, south = level > 0 ? z / level : 1;
@@ -87,7 +87,7 @@ void append_rigid(const Scene& scene, std::span<const Eigen::Matrix4f> poses, st
 render::Camera kept_outside(render::Camera camera, std::span<const SolidBox> bodies) {
   const Vector3f back = (camera.eye - camera.target).normalized();
   const Vector3f margin = Vector3f::Constant(2 * camera.near_plane);
-  for (std::size_t again = 0; again < bodies.size(); ++again) {  // behind one there may be another
+  for (std::size_t again = 0; again < bodies.size(); ++again) {  // there may be another body behind one
     bool inside = false;
     for (const auto& [bounds, pose] : bodies) {
       const Vector3f low = bounds.low - margin, high = bounds.high + margin;
@@ -115,7 +115,7 @@ void frame_bodies(Scene& scene) {
     all->low = all->low.cwiseMin(low);
     all->high = all->high.cwiseMax(high);
   };
-  /// The top of what lies below, that it may fall onto.
+  /// The top of what is below, onto which it may fall.
   const auto ground_below = [&](const Vector3f& low, const Vector3f& high) {
     std::optional<float> ground;
     const Vector3f middle = 0.5f * (low + high);

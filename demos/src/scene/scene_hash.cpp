@@ -11,8 +11,7 @@
 namespace softcell::demos {
 namespace {
 
-/// Takes values in order. Structs are taken apart by structured bindings, so that a field that is added is
-/// noticed here by the compiler.
+/// Hashes values in order. Structs are taken apart by structured bindings, so that the compiler reports here when a field is added.
 class Hash {
  public:
   std::uint64_t value() const { return value_; }
@@ -21,7 +20,7 @@ class Hash {
   void add(const Values&... values) {
     (add(values), ...);
   }
-  /// What scenes did not always have says nothing where it is as it always was: older recordings still fit.
+  /// Adds nothing for a feature that older scenes did not have, if it has the value that it always had: older recordings still fit.
   template <class Value>
   void add_unless(const Value& value, const Value& usual) {
     if (value != usual) add(value);
@@ -59,7 +58,7 @@ class Hash {
 
   void add(const ppu::TriangleMesh& mesh) {
     const auto& [positions, normals, triangles, texture_coordinates, colours, parts, materials] = mesh;
-    add(positions, triangles);  // all else is looks
+    add(positions, triangles);  // everything else only affects looks
   }
   void add(const ppu::SoftBodySettings& settings) {
     const auto& [cell_size, half_width, density, alpha, damping, friction, restitution, contacts, frequency,
@@ -170,7 +169,7 @@ std::uint64_t scene_hash(const Scene& scene) {
   hash.add(3, soft_bodies, boxes, obstacles, tilt, gravity, friction, substeps);
   hash.add_unless(restitution, 0.0f);
   hash.add_unless(static_cast<int>(contacts), static_cast<int>(ppu::ContactMethod::kSpheres));
-  if (!attachments.empty()) hash.add('a', attachments);  // unlike a scene that has none
+  if (!attachments.empty()) hash.add('a', attachments);  // nothing is added for a scene that has none
   if (!rigid_bodies.empty()) hash.add('r', rigid_bodies);
   if (!joints.empty()) hash.add('j', joints);
   hash.add_unless(static_cast<int>(sleep), 0);

@@ -1,6 +1,5 @@
 #pragma once
-// One number for all of a scene that decides how its simulation goes: equal numbers, equal runs under equal
-// events.
+// A hash of all parts of a scene that affect its simulation: scenes with equal hashes behave equally under equal events.
 
 #include <cstdint>
 
@@ -9,7 +8,7 @@
 
 namespace softcell::demos {
 
-/// Not part of it: names, looks, the camera, and the script, whose events a recording has.
+/// It leaves out names, looks, the camera, and the script, whose events a recording has.
 /// @source  XXH3, the 64-bit variant, over the values in order
 std::uint64_t scene_hash(const Scene& scene);
 std::uint64_t scene_hash(const Scene2d& scene);

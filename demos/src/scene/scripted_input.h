@@ -1,5 +1,5 @@
 #pragma once
-// What happens to a scene by itself, at times laid down in its file. Dimension: 2 or 3.
+// What happens to a scene at times that its file states. Dimension: 2 or 3.
 
 #include <Eigen/Core>
 #include <cstddef>
@@ -7,7 +7,7 @@
 
 namespace softcell::demos {
 
-/// All particles of a soft body get faster at once.
+/// Adds a velocity to all particles of a soft body at once.
 template <int Dimension>
 struct ScriptedImpulse {
   float time = 0;        ///< seconds
@@ -15,7 +15,7 @@ struct ScriptedImpulse {
   Eigen::Matrix<float, Dimension, 1> velocity = Eigen::Matrix<float, Dimension, 1>::Zero();  ///< m/s, added
 };
 
-/// A hand takes the particle nearest to `from`, moves evenly to `to`, and lets go.
+/// A hand takes the particle nearest to `from`, moves to `to` at constant speed, and lets go.
 template <int Dimension>
 struct ScriptedDrag {
   float begin = 0, end = 0;  ///< seconds
@@ -29,7 +29,7 @@ struct GravityChange {
   float gravity = 0;  ///< m/s^2 downwards, from then on
 };
 
-/// Time stands still; that of the script goes on.
+/// Simulated time stands still; the time of the script goes on.
 struct ScriptedPause {
   float begin = 0, end = 0;  ///< seconds
 };
@@ -40,7 +40,7 @@ struct ScriptedInput {
   std::vector<ScriptedDrag<Dimension>> drags;
   std::vector<GravityChange> gravity;
   std::vector<ScriptedPause> pauses;
-  std::vector<float> resets;  ///< seconds: everything is as it was at the beginning; the script goes on
+  std::vector<float> resets;  ///< seconds: everything is again as at the beginning; the script goes on
 };
 
 }  // namespace softcell::demos

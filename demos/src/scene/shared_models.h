@@ -1,6 +1,6 @@
 #pragma once
-// Equal bodies have one model: its constants, plan and mesh are made once, lie in memory once, and SPEs fetch
-// them once for many bodies.
+// Shares one model among equal bodies: its constants, plan and mesh are made once, are in memory once, and an SPE fetches them once for
+// many bodies.
 
 #include <algorithm>
 #include <cstddef>
@@ -11,13 +11,13 @@
 
 namespace softcell::demos {
 
-/// The models of `count` bodies, in order; those of equal ones are the same.
+/// The models of `count` bodies, in order; equal bodies share one.
 /// @param same  (i, j) -> whether bodies i and j have equal models
 /// @param make  (i) -> a shared pointer to the model of body i
 template <typename Same, typename Make>
 auto shared_models(std::size_t count, const Same& same, const Make& make) {
   std::vector<std::invoke_result_t<const Make&, std::size_t>> models;
-  std::vector<std::size_t> first;  // of the bodies with each model
+  std::vector<std::size_t> first;  // the first body with each model
   for (std::size_t i = 0; i < count; ++i) {
     const auto known = std::ranges::find_if(first, [&](std::size_t j) { return same(i, j); });
     if (known == first.end()) {

@@ -21,9 +21,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kCellsAlong = 8;  // as --mesh has them
+constexpr int kCellsAlong = 8;  // as with --mesh
 
-/// The scene's document, to be changed: nobody else has it from now on.
+/// Gives the scene a document of its own, which may be changed.
 template <class SceneOf>
 SceneDocument& own_document(SceneOf& scene) {
   auto own = std::make_shared<SceneDocument>(*scene.document);
@@ -44,7 +44,7 @@ SceneOf changed_by_run(const SceneOf& scene, const PresentScene<Dimension>& now)
   return changed;
 }
 
-/// "cat", or where a body has that name "cat 2".
+/// "cat"; if a body already has that name, "cat 2".
 template <class SceneOf>
 std::string free_name(const SceneOf& scene, const std::string& name) {
   const auto taken = [&](const std::string& candidate) {
@@ -62,7 +62,7 @@ std::string printable_stem(const fs::path& file) {
   return stem.empty() ? "body" : stem;
 }
 
-/// Of the new body what the scene's first one is made of, but for the size of its cells.
+/// The new body's item: it has the material of the scene's first body, except for the size of its cells.
 template <int Dimension, class SceneOf>
 Table new_item(const SceneOf& scene, const std::string& name, const NewBody<Dimension>& body,
                float cell_size) {
@@ -93,7 +93,7 @@ void add_item(SceneOf& scene, Table item, const std::vector<fs::path>& files) {
   try {
     read_another_body(value, SceneSource::of_user(files), changed);
   } catch (const SceneError& error) {
-    // There is no scene file in which the place of the mistake could be.
+    // The mistake is in no scene file, so the message has no place.
     const std::string sentence = error.what(), place = to_string(value.place) + ": ";
     throw std::runtime_error(sentence.starts_with(place) ? sentence.substr(place.size()) : sentence);
   }
@@ -104,7 +104,7 @@ void add_item(SceneOf& scene, Table item, const std::vector<fs::path>& files) {
   scene = std::move(changed);
 }
 
-/// @param field  that names the file
+/// @param field  the field that names the file
 template <int Dimension, class SceneOf>
 void add_file_as(const std::string& field, int cells_along, SceneOf& scene, const fs::path& file,
                  const NewBody<Dimension>& body) {
@@ -126,7 +126,7 @@ Value shape_value(std::string_view kind, std::initializer_list<std::pair<std::st
 constexpr std::array<std::string_view, 6> kShapes3d{"box", "sphere", "torus", "cylinder", "cone", "penguin"};
 constexpr std::array<std::string_view, 3> kShapes2d{"rectangle", "disc", "ring"};
 
-/// Removes items that name the body.
+/// Removes the items that name the body.
 void erase_naming(Table& root, std::string_view array, std::initializer_list<std::string_view> fields,
                   const std::string& name) {
   Array* const items = items_in(root, array);
@@ -141,7 +141,7 @@ void erase_naming(Table& root, std::string_view array, std::initializer_list<std
   if (items->empty()) erase_fields(root, {array});
 }
 
-/// Removes what belongs to the body, and counts those behind it down.
+/// Removes what belongs to the body, and renumbers what belongs to bodies after it.
 template <class Items>
 void erase_of_body(Items& items, std::size_t body) {
   std::erase_if(items, [&](const auto& item) { return item.body == body; });
@@ -149,7 +149,7 @@ void erase_of_body(Items& items, std::size_t body) {
     if (item.body > body) --item.body;
 }
 
-/// Removes what is attached to the body, counts those behind it down, and the attachments that have ended with them.
+/// Removes the attachments of the body, renumbers the bodies after it, and renumbers the attachments that have ended.
 template <int Dimension>
 void erase_attachments(std::vector<AttachmentPlacement<Dimension>>& attachments, std::size_t body,
                        std::vector<std::uint32_t>* ended) {
@@ -180,11 +180,11 @@ void remove_from(SceneOf& scene, std::size_t body, std::string_view own_side) {
   SceneDocument& document = own_document(scene);
   Table& root = root_of(document);
   Array& items = *items_in(root, "soft_body");
-  // The model of the command line is in place of the first that lets it be.
+  // The model of the command line replaces the first body that lets it.
   const auto lets = [&](Value& item) { return find_field(std::get<Table>(item.data), own_side) != nullptr; };
   const auto first = std::ranges::find_if(items, lets);
   if (first != items.end() && static_cast<std::size_t>(first - items.begin()) == body) document.own.reset();
-  // Names that bodies have by their number stay what they are.
+  // Names that bodies have by their number do not change.
   for (std::size_t b = 0; b < items.size(); ++b)
     set_field(std::get<Table>(items[b].data), "name", text_value(scene.soft_bodies[b].name));
   items.erase(items.begin() + static_cast<std::ptrdiff_t>(body));

@@ -1,6 +1,6 @@
 #pragma once
-// What a user makes of a scene while it runs: another body, one less, another density. Each gives a new scene that begins with the moment
-// of the change; a new simulation takes it over.
+// The changes that a user makes to a running scene: another body, one body less, another density. Each changes the scene so that it begins
+// at the moment of the change; a new simulation takes it over.
 
 #include <Eigen/Core>
 #include <cstddef>
@@ -13,15 +13,15 @@
 
 namespace softcell::demos {
 
-/// The scene as it is now: its parameters, its document and its beginning.
-/// @throws std::runtime_error  a program has made it
+/// The scene in its present state: its parameters, its document and its beginning.
+/// @throws std::runtime_error  the scene was made by a program and has no document
 Scene scene_now(const Scene& scene, const PresentScene<3>& now);
 Scene2d scene_now(const Scene2d& scene, const PresentScene<2>& now);
 
-/// Shapes that come without a file, by the names of scene files.
+/// The shapes that need no file, by the names that scene files use.
 std::span<const std::string_view> spawned_shapes(int dimension);
 
-/// How large a new body is, how stiff, and where.
+/// Size, stiffness and place of a new body.
 template <int Dimension>
 struct NewBody {
   /// The middle of its box, metres.
@@ -30,16 +30,17 @@ struct NewBody {
   float alpha = 0.5f;      ///< see ppu::SoftBodySettings
 };
 
-/// Adds a soft body that is made as --mesh or --image would make it, undeformed and at rest. Its other material is that of the scene's first soft body.
+/// Adds a soft body that is made as --mesh or --image makes one, undeformed and at rest. The rest of its material is that of the scene's
+/// first soft body.
 /// @param file  glTF, OBJ, PLY or STL; in 2D PNG
-/// @throws std::runtime_error  one sentence: no such file, or the scene would be too large. The scene is as it was.
+/// @throws std::runtime_error  one sentence: no such file, or the scene would be too large. The scene is then unchanged.
 void add_file(Scene& scene, const std::filesystem::path& file, const NewBody<3>& body);
 void add_file(Scene2d& scene, const std::filesystem::path& file, const NewBody<2>& body);
 /// Adds one of spawned_shapes(). @throws std::runtime_error  the scene would be too large
 void add_shape(Scene& scene, std::string_view shape, const NewBody<3>& body);
 void add_shape(Scene2d& scene, std::string_view shape, const NewBody<2>& body);
 
-/// Removes a soft body with what is attached to it and what the script does to it. @pre there is such a body
+/// Removes a soft body, its attachments, and the events of the script that concern it. @pre there is such a body
 void remove_body(Scene& scene, std::size_t body);
 void remove_body(Scene2d& scene, std::size_t body);
 

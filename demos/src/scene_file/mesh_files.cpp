@@ -12,7 +12,7 @@
 namespace softcell::demos {
 namespace {
 
-/// Of all pictures of the mesh's materials, each counted once.
+/// The pixels of all pictures of the mesh's materials, each counted once.
 std::size_t pixels_of(const ppu::TriangleMesh& mesh) {
   std::set<const ppu::MeshPicture*> pictures;
   std::size_t pixels = 0;

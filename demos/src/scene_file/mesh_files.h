@@ -17,17 +17,17 @@ std::string not_read_of(const std::string& file, const ppu::ImportReport& report
 
 class MeshFiles {
  public:
-  /// All pixels of the pictures of a scene's meshes: 512 MB.
+  /// The limit on all pixels in the pictures of a scene's meshes: 512 MB.
   static constexpr std::size_t kMaxPixels = std::size_t{128} << 20;
 
-  /// @param source  outlives this; it learns which files were read.
+  /// @param source  must outlive this object; it is told which files were read.
   explicit MeshFiles(const SceneSource& source) : source_(source) {}
 
   /// The mesh in a file that the scene names at `place`. Bodies that name the same file share its pictures.
-  /// @throws SceneError  there is none, it may not be named, it is no mesh, or the scene has too many pixels.
+  /// @throws SceneError  there is no such file, the scene may not name it, it is no mesh, or the scene has too many pixels.
   const ppu::TriangleMesh& mesh(const std::string& file, const Place& place);
 
-  /// What of the meshes was not read, a sentence for each file.
+  /// The parts of the meshes that were not read, one sentence for each file.
   const std::vector<std::string>& notes() const { return notes_; }
 
  private:

@@ -22,7 +22,7 @@ double cell_size(const OwnModelOptions& options, double longest) {
   SC_ASSERT(longest > 0 && options.cells > 0, "{} cells along {}", options.cells, longest);
   if (!options.cell) return longest / options.cells;
   const double cell = *options.cell;
-  constexpr double kNearlyAll = 0.999;  // of the model: what is left would be a rounding of a cell
+  constexpr double kNearlyAll = 0.999;  // of the model: the rest would be a rounding error of a cell
   if (cell > kNearlyAll * longest) {
     throw std::runtime_error(fmt::format(
         "--cell {}: one cell would hold the whole model, which is {:.4g} long; give less than that", cell,
@@ -36,7 +36,7 @@ double cell_size(const OwnModelOptions& options, double longest) {
   return cell;
 }
 
-/// Of the lattice with such cells; nothing when there is no such lattice.
+/// The number of particles of the lattice with such cells; none if there is no such lattice.
 std::optional<std::size_t> particles_of(const ppu::TriangleMesh& mesh, double cell) {
   try {
     return ppu::count_particles(mesh, static_cast<float>(cell));
@@ -49,19 +49,19 @@ bool fit_a_scene(std::optional<std::size_t> particles) {
   return particles && *particles <= kMaxParticlesOfScene;
 }
 
-/// Says what is wrong with cells of this size, or with the model, when something is. It is refused here,
-/// before the scene scales both.
+/// Throws if cells of this size or the model itself cannot be used. The model is refused here, before the scene scales the model and its
+/// cells.
 void check_lattice(const OwnModelOptions& options, const ppu::TriangleMesh& mesh, double longest,
                    double cell) {
   const std::optional<std::size_t> particles = particles_of(mesh, cell);
   if (fit_a_scene(particles)) return;
-  // Cells of twice the size leave an eighth of the particles or more: smaller ones than these need no try.
+  // Cells of twice the size leave an eighth of the particles or more, so that cells smaller than this need not be tried.
   const double least =
       particles ? cell * std::cbrt(static_cast<double>(*particles) / kMaxParticlesOfScene) : cell;
-  constexpr double kCoarser = 1.2;  // few tries, and near enough
+  constexpr double kCoarser = 1.2;  // needs few tries, and is precise enough
   double enough = cell * kCoarser;
   while (enough < longest && (enough < least || !fit_a_scene(particles_of(mesh, enough)))) enough *= kCoarser;
-  if (enough >= longest) ppu::voxelize(mesh, static_cast<float>(cell));  // whose sentence is about the mesh
+  if (enough >= longest) ppu::voxelize(mesh, static_cast<float>(cell));  // its message is about the mesh
   const std::string too_many =
       fmt::format("the lattice would have more than {} particles", kMaxParticlesOfScene);
   if (options.cell) {
@@ -72,7 +72,7 @@ void check_lattice(const OwnModelOptions& options, const ppu::TriangleMesh& mesh
                                        static_cast<int>(longest / enough)));
 }
 
-/// Metres. @param longest  side of the model's box, in its units
+/// The longest side in metres. @param longest  side of the model's box, in its units
 float own_size(double unit, double longest, double cell) {
   if (cell * unit < static_cast<double>(kLeastCellSize)) {
     throw std::runtime_error(
@@ -99,7 +99,7 @@ std::optional<OwnModel> load_own_model(const OwnModelOptions& options) {
   if (options.z_up) ppu::turn_z_up(model.mesh);
   const ppu::Bounds<3> box = ppu::bounds(model.mesh);
   const double longest = (box.high - box.low).maxCoeff();
-  constexpr double kLeastSide = 1e-30;  // whose inverse a float holds
+  constexpr double kLeastSide = 1e-30;  // a float holds its inverse
   if (!(longest >= kLeastSide))
     throw std::runtime_error(fmt::format("{}: its longest side is {:.3g}; {} or more was expected",
                                          options.mesh->string(), longest, kLeastSide));

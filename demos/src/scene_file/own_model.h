@@ -8,22 +8,22 @@
 
 namespace softcell::demos {
 
-/// Of the longest edge of a tessellated mesh, in cells.
+/// Limits of the longest edge of a tessellated mesh, in cells.
 inline constexpr float kLeastTessellation = 0.125f, kMostTessellation = 100;
 
 struct OwnModelOptions {
   std::optional<std::filesystem::path> mesh;  ///< the user's own model
-  bool z_up = false;                          ///< its z axis points upwards, not its y axis
-  /// Metres of one unit of the model; none: the model is scaled to the size of what it replaces.
+  bool z_up = false;                          ///< its z axis points upwards instead of its y axis
+  /// Metres per unit of the model; none: the model is scaled to the size of the body that it replaces.
   std::optional<double> unit = {};
   int cells = 8;               ///< along the model's longest side
-  std::optional<double> cell;  ///< their size in the model's own units, above 0, in place of `cells`
-  std::optional<float> tessellation = {};  ///< longer edges of its triangles are halved: cells
+  std::optional<double> cell;  ///< size of a cell in the model's own units, above 0, instead of `cells`
+  std::optional<float> tessellation = {};  ///< in cells: longer edges of its triangles are halved
 };
 
 /// @return the model, centred; none when the options give none.
-/// @throws std::runtime_error  the file holds no model, or its lattice would be too fine or too coarse; the
-///                             sentence names the option and has the model's own units.
+/// @throws std::runtime_error  the file holds no model, or its lattice would be too fine or too coarse; the message names the option and
+/// uses the model's own units.
 std::optional<OwnModel> load_own_model(const OwnModelOptions& options);
 
 }  // namespace softcell::demos

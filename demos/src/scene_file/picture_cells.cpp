@@ -19,7 +19,7 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector2i;
 
-/// A picture's silhouette: areas of it, in pixels from the picture's lower left corner.
+/// Measures areas of a picture's silhouette, in pixels from the picture's lower left corner.
 class Silhouette {
  public:
   explicit Silhouette(const render::Image& image)
@@ -42,10 +42,10 @@ class Silhouette {
   }
 
   bool empty() const { return sums_.back() == 0; }
-  const Vector2i& low() const { return low_; }    ///< of its box
-  const Vector2i& high() const { return high_; }  ///< behind its last pixel
+  const Vector2i& low() const { return low_; }    ///< corner of its box
+  const Vector2i& high() const { return high_; }  ///< after its last pixel
 
-  /// Pixels of it in a rectangle, parts of pixels counted as such.
+  /// The number of its pixels in a rectangle, with fractions of pixels.
   double area(const Vector2d& low, const Vector2d& high) const {
     return sum(high.x(), high.y()) - sum(low.x(), high.y()) - sum(high.x(), low.y()) + sum(low.x(), low.y());
   }
@@ -54,7 +54,7 @@ class Silhouette {
   std::size_t slot(int x, int y) const {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_ + 1) + static_cast<std::size_t>(x);
   }
-  /// Left of x and below y.
+  /// The number of its pixels left of x and below y.
   double sum(double x, double y) const {
     x = std::clamp(x, 0.0, double(width_));
     y = std::clamp(y, 0.0, double(height_));
@@ -67,16 +67,16 @@ class Silhouette {
 
   int width_, height_;
   Vector2i low_, high_;
-  std::vector<std::uint32_t> sums_;  // of all pixels left of and below a corner
+  std::vector<std::uint32_t> sums_;  // for each corner, all pixels left of it and below it
 };
 
-/// The mean of squares of `factor` x `factor` pixels, weighted by alpha.
+/// Replaces each square of `factor` x `factor` pixels by its mean, weighted by alpha.
 render::Image made_smaller(const render::Image& image, int factor) {
   render::Image smaller((image.width + factor - 1) / factor, (image.height + factor - 1) / factor);
   for (int y = 0; y < smaller.height; ++y) {
     for (int x = 0; x < smaller.width; ++x) {
       std::array<std::uint32_t, 4> sums{};
-      std::uint32_t pixels = 0;  // fewer at the picture's upper and right border
+      std::uint32_t pixels = 0;  // fewer than `factor` squared at the picture's upper and right border
       for (int j = y * factor; j < std::min((y + 1) * factor, image.height); ++j) {
         for (int i = x * factor; i < std::min((x + 1) * factor, image.width); ++i) {
           const std::uint8_t* const pixel = image.pixel(i, j);
@@ -120,7 +120,7 @@ PictureCells cells_of_picture(std::shared_ptr<const render::Image> image, double
   }
   const Vector2d box = (silhouette.high() - silhouette.low()).cast<double>();
   const double cell = box.maxCoeff() / cells;  // pixels
-  // Whole cells over the silhouette's box, which is in their middle.
+  // Whole cells over the silhouette's box, which is in the middle of them.
   const Vector2i count(
       (box / cell - Vector2d::Constant(1e-6)).array().ceil().cwiseMax(1.0).matrix().cast<int>());
   const Vector2d low = silhouette.low().cast<double>() + (box - cell * count.cast<double>()) / 2;

@@ -1,5 +1,5 @@
 #pragma once
-// The cells of a soft body in two dimensions from a picture's silhouette.
+// Makes the cells of a soft body in two dimensions from the silhouette of a picture.
 
 #include <Eigen/Core>
 #include <filesystem>
@@ -11,27 +11,27 @@
 
 namespace softcell::demos {
 
-/// A picture as it is kept: longer ones are made smaller.
+/// The longest side of a picture that is kept; larger pictures are scaled down.
 inline constexpr int kMaxKeptSide = 1024;  // pixels
 
-/// Cells along the longest side of a picture's silhouette, where nobody says how many or how large.
+/// Cells along the longest side of a picture's silhouette, unless the scene or the user states their number or size.
 inline constexpr int kCellsAlongPicture = 20;
 
 /// Reads a PNG file. @throws std::runtime_error  as render::read_picture()
 std::shared_ptr<const render::Image> load_picture(const std::filesystem::path& path);
 
-/// The picture, or one that is smaller by a whole factor and has at most kMaxKeptSide pixels a side.
+/// The picture itself, or the picture scaled down by a whole factor to at most kMaxKeptSide pixels a side.
 render::Image kept_picture(render::Image picture);
 
 struct PictureCells {
   std::vector<Eigen::Vector2i> cells;  ///< grid indices
-  Picture2d picture;                   ///< where it lies on them
+  Picture2d picture;                   ///< where the picture lies on the cells
 };
 
-/// A cell is in the body if at least half of it is silhouette: where the picture's alpha is above half. A part that is
-/// so thin that no such cell is near takes the cells that it passes through. Pieces of a silhouette that no cells join
-/// are pieces of one body and move apart. Deterministic.
-/// @param cells  along the longest side of the silhouette, above 0; not necessarily a whole number
+/// A cell is in the body if at least half of it is silhouette, that is, if the picture's alpha is above half there. A part that is so thin
+/// that no such cell is near takes the cells that it passes through. If the cells do not join pieces of the silhouette, these are pieces of
+/// one body and move apart. Deterministic.
+/// @param cells  along the longest side of the silhouette, above 0; need not be a whole number
 /// @throws std::runtime_error  the picture is transparent, or would have more cells than a lattice along an axis.
 PictureCells cells_of_picture(std::shared_ptr<const render::Image> image, double cells);
 

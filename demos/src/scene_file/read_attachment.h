@@ -1,5 +1,5 @@
 #pragma once
-// The items of `attach`, in two dimensions and three.
+// Reads the items of `attach`, in two dimensions and three.
 
 #include <stdexcept>
 #include <string>
@@ -10,7 +10,7 @@
 
 namespace softcell::demos {
 
-/// Reads all fields but those that say what rigid body it is to, which have been read.
+/// Reads all fields except those that name the rigid body, which the caller has read.
 /// @throws SceneError
 template <int kDimension, class SceneOf>
 void read_attachment(FieldReader& fields, const SceneOf& scene, AttachmentPlacement<kDimension>& attachment) {

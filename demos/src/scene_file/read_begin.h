@@ -1,5 +1,5 @@
 #pragma once
-// The table `begin` of a scene: with what moment of a run it begins.
+// Reads the table `begin` of a scene: the moment of a run with which the scene begins.
 
 #include <fmt/format.h>
 
@@ -17,8 +17,8 @@
 
 namespace softcell::demos {
 
-/// Null without the table. @param particles  of each soft body, in order
-/// @throws SceneError  also where the state is of other bodies
+/// Null if there is no such table. @param particles  their number in each soft body, in order
+/// @throws SceneError  also if the state belongs to other bodies
 template <int Dimension, class SceneOf>
 std::shared_ptr<const Beginning<Dimension>> read_begin(const Value* value, const SceneSource& source,
                                                        const std::vector<std::size_t>& particles,

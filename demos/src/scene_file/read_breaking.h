@@ -1,5 +1,5 @@
 #pragma once
-// Where bodies of a scene break more easily, and what cuts them.
+// Reads where bodies of a scene break more easily, and what cuts them.
 
 #include <fmt/format.h>
 
@@ -13,7 +13,7 @@
 
 namespace softcell::demos {
 
-/// Where a body is weaker or stronger than its material: its tables `strength`.
+/// Reads the tables `strength` of a body: where it is weaker or stronger than its material.
 template <int Dimension>
 void read_strengths(FieldReader& fields, std::vector<StrengthSlab<Dimension>>& strengths) {
   constexpr std::size_t kMaxSlabs = 64;
@@ -32,7 +32,7 @@ void read_strengths(FieldReader& fields, std::vector<StrengthSlab<Dimension>>& s
   }
 }
 
-/// Planes, lines and strokes that cut bodies, after the soft bodies: the tables `cut` of a scene.
+/// Reads a table `cut` of a scene: a plane, line or stroke that cuts a body. The soft bodies must have been read.
 inline void read_cut(FieldReader& fields, const Place& place, ppu::Cut& where) {
   Eigen::Vector3f point{0, 0, 0}, normal{1, 0, 0}, edge{0, 0, 0}, way{0, 0, 0};
   fields.vector<3>("point", point, kCoordinate, Need::kRequired)

@@ -1,5 +1,5 @@
 #pragma once
-// What scenes of two and of three dimensions have in common.
+// Limits and readers that scenes in two and in three dimensions share.
 
 #include <fmt/format.h>
 
@@ -14,17 +14,17 @@
 
 namespace softcell::demos {
 
-// More than these no host plays, and a slip of the pen is more likely.
+// No host can play more than these; a larger number is more likely a typing error.
 inline constexpr std::size_t kMaxSoftBodies = 256, kMaxRigidBodies = 1000, kMaxEvents = 1000,
                              kMaxPictures = 1000, kMaxAttachments = 1000;
 inline constexpr std::uint32_t kMaxParticlesOfScene = 300'000;
-/// While the bodies of a scene are read. @throws SceneError  there are too many particles so far
+/// Call it while the bodies of a scene are read. @throws SceneError  there are too many particles so far
 inline void check_particles(std::size_t particles, const Place& place) {
   if (particles > kMaxParticlesOfScene)
     throw SceneError(place, fmt::format("the scene has {} particles or more; it may have at most {}",
                                         particles, kMaxParticlesOfScene));
 }
-/// With a body that is added to a scene. @throws SceneError  there would be too many particles
+/// Call it when a body is added to a scene. @throws SceneError  there would be too many particles
 inline void check_added_particles(std::size_t particles, const Place& place) {
   if (particles > kMaxParticlesOfScene)
     throw SceneError(place, fmt::format("the scene would have {} particles; it may have at most {}",
@@ -35,8 +35,8 @@ inline constexpr int kMaxFrames = 1'000'000;
 inline constexpr int kMaxSubsteps = 64;
 inline constexpr double kMaxGravity = 1000;  // m/s^2
 inline constexpr double kMaxMass = 1e6;      // kg
-inline constexpr double kLeastMass = 1e-6;   // kg; of what moves: floats have inverses of masses and inertias
-inline constexpr double kLeastCellSize = 0.001;  // metres; likewise
+inline constexpr double kLeastMass = 1e-6;   // kg, if it moves: floats hold inverses of masses and inertias
+inline constexpr double kLeastCellSize = 0.001;  // metres, for the same reason
 inline constexpr double kMaxTime = 1e5;          // seconds
 inline constexpr double kMaxSpeed = 1000;        // m/s
 inline constexpr Range kGravityOfScene{.low = -kMaxGravity, .high = kMaxGravity};
@@ -50,7 +50,7 @@ inline std::string item_name(const char* kind, std::size_t index, const std::str
   return fmt::format("{} {}{}", kind, index + 1, name.empty() ? "" : fmt::format(" ('{}')", name));
 }
 
-/// The text in an item's `name`, for sentences about the item.
+/// The text in an item's `name`, for messages about the item.
 inline std::string stated_name(const Value& item) {
   const auto* table = std::get_if<Table>(&item.data);
   if (table == nullptr) return {};
@@ -61,7 +61,7 @@ inline std::string stated_name(const Value& item) {
   return {};
 }
 
-/// The fields `title`, `frames` and `pictures` of the scene, and its table `world`.
+/// Reads the fields `title`, `frames` and `pictures` of the scene, and its table `world`.
 /// @param SceneOf  Scene or Scene2d
 template <class SceneOf>
 void read_world(FieldReader& fields, SceneOf& scene) {
@@ -89,7 +89,7 @@ void read_world(FieldReader& fields, SceneOf& scene) {
   std::sort(scene.pictures.begin(), scene.pictures.end());
 }
 
-/// The field `mass` of a rigid body. @throws SceneError
+/// Reads the field `mass` of a rigid body. @throws SceneError
 inline void read_mass(FieldReader& fields, float& mass) {
   fields.number("mass", mass, kMass);
   if (mass > 0 && mass < static_cast<float>(kLeastMass)) {
@@ -100,15 +100,15 @@ inline void read_mass(FieldReader& fields, float& mass) {
   }
 }
 
-/// Seconds of a substep.
+/// Seconds per substep.
 template <class SceneOf>
 double step_of(const SceneOf& scene) {
   SC_ASSERT(scene.substeps > 0, "{} substeps in a frame", scene.substeps);
   return 1.0 / 60 / scene.substeps;
 }
 
-/// Events name soft bodies, so that each must have a name of its own, the default names included.
-/// @param fields  of the scene's last soft body. @throws SceneError  another has its name.
+/// Events refer to soft bodies by name, so each must have a name of its own, default names included.
+/// @param fields  of the scene's last soft body. @throws SceneError  another body has its name.
 template <class SceneOf>
 void check_name(const FieldReader& fields, const SceneOf& scene) {
   SC_ASSERT(!scene.soft_bodies.empty(), "the last body of {} is none", fields.what());
@@ -141,7 +141,7 @@ std::size_t read_body(FieldReader& event, const SceneOf& scene) {
   return event.has("body") ? find_body(name, event.place("body"), scene) : scene.soft_bodies.size();
 }
 
-/// The fields `begin` and `end` of an event that lasts. @throws SceneError  it ends before it begins.
+/// Reads the fields `begin` and `end` of an event that lasts. @throws SceneError  it ends before it begins.
 template <class Event>
 void read_duration(FieldReader& fields, Event& event) {
   fields.number("begin", event.begin, kTime, Need::kRequired)
@@ -153,7 +153,7 @@ void read_duration(FieldReader& fields, Event& event) {
   }
 }
 
-/// The tables `impulse`, `drag`, `gravity`, `pause` and `reset` of the scene, after its soft bodies.
+/// Reads the tables `impulse`, `drag`, `gravity`, `pause` and `reset` of the scene. Its soft bodies must have been read.
 template <int Dimension, class SceneOf>
 void read_script(FieldReader& fields, SceneOf& scene) {
   const auto impulses = fields.items("impulse", kMaxEvents);

@@ -44,16 +44,16 @@ void rectangle(FieldReader& fields, SoftBody2dPlacement& body) {
   body.cells = cells_where({width, height}, [](int, int) { return true; });
 }
 
-/// Cells whose middles lie in a ring; a disc is one without a hole.
+/// The cells whose centres lie in a ring; a disc is a ring without a hole.
 void ring_of(int diameter, int hole, SoftBody2dPlacement& body) {
   SC_ASSERT(diameter > 0 && hole >= 0 && hole < diameter, "a ring of {} cells with a hole of {}", diameter,
             hole);
   body.cells = cells_where({diameter, diameter}, [&](int x, int y) {
-    // Twice the distances from the middle, so that all is whole.
+    // Twice the distances from the middle, so that they are whole numbers.
     const int dx = 2 * x + 1 - diameter, dy = 2 * y + 1 - diameter, squared = dx * dx + dy * dy;
     return squared <= diameter * diameter && squared >= hole * hole;
   });
-  // Between the nearest and the farthest places of the cells' edge, so that what it lies on is neither covered nor far below.
+  // Between the nearest and the farthest points of the cells' edge, so that it neither covers what the body lies on nor ends far above it.
   const float half = 0.5f * static_cast<float>(diameter);
   float farthest = half;
   for (const Vector2i& cell : body.cells) {
@@ -124,7 +124,7 @@ Cells read_cells(std::span<const Value> items, const std::string& owner) {
   return cells;
 }
 
-/// What a lattice's Lua file returns: `cells` or `rows`.
+/// Reads what a lattice's Lua file returns: `cells` or `rows`.
 Cells read_lattice_file(const SourceText& file, const Place& place) {
   if (!file.is_lua())
     throw SceneError(place, fmt::format("lattice '{}' must be a file that ends in .lua", *file.name));
@@ -137,7 +137,8 @@ Cells read_lattice_file(const SourceText& file, const Place& place) {
   return rows.empty() ? read_cells(cells, "a lattice") : read_rows(rows, "a lattice");
 }
 
-/// A quotient that is a rounding of floats off a whole number is that: the picture is cut into the same cells.
+/// If rounding of floats has made the quotient slightly different from a whole number, returns that number: the picture is cut into the
+/// same cells.
 double cells_along(float side, float cell_size) {
   const double cells = double{side} / double{cell_size}, whole = std::round(cells);
   return std::abs(cells - whole) < 1e-6 * whole ? whole : cells;

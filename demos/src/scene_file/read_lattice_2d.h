@@ -17,31 +17,30 @@ namespace softcell::demos {
 /// files together run for no longer than one script may (kLuaSeconds).
 class LatticeFiles {
  public:
-  /// The source must outlive it.
+  /// @param source  must outlive this object
   explicit LatticeFiles(const SceneSource& source);
 
-  /// Good as long as this is. @throws SceneError
+  /// The result is valid as long as this object. @throws SceneError
   const std::vector<Eigen::Vector2i>& cells(const std::string& file, const Place& place);
   /// @throws SceneError
   std::shared_ptr<const render::Image> picture(const std::string& file, const Place& place);
 
  private:
   const SceneSource& source_;
-  double begin_;  // seconds of processor time that child processes had needed
+  double begin_;  // seconds of processor time that child processes had used when this object was made
   std::map<std::string, std::vector<Eigen::Vector2i>> known_;
   std::map<std::string, std::shared_ptr<const render::Image>> pictures_;
 };
 
-/// Takes the place of what a body states: the user's own picture.
+/// The user's own picture, which replaces what a body states.
 struct OwnPicturePlace {
-  const OwnPicture* picture = nullptr;  ///< null: what the body states counts
+  const OwnPicture* picture = nullptr;  ///< null: the body keeps what it states
   float longest_side = 0;               ///< metres
 };
 
-/// The cells of a 2D soft body: its field `rows`, a picture in text; `shape`, a primitive; `lattice`, a Lua file; or
-/// `image`, a picture, which the body is then drawn with. These are the last fields that are read of the body: what else
-/// it has is refused.
-/// @param body  its cells, its ring and its picture are set; for a picture its cell size, if it is 0
+/// Reads the cells of a 2D soft body: its field `rows`, a picture in text; `shape`, a primitive; `lattice`, a Lua file; or `image`, a
+/// picture, with which the body is then drawn. These must be the last fields that are read of the body: any others that it has are refused.
+/// @param body  gets its cells, its ring and its picture; with a picture also its cell size, if that is 0
 /// @throws SceneError
 void read_lattice_2d(FieldReader& fields, LatticeFiles& files, const OwnPicturePlace& own,
                      SoftBody2dPlacement& body);

@@ -17,7 +17,7 @@
 namespace softcell::demos {
 namespace {
 
-// Least values: of what is smaller, and far lighter than air, masses and inertias soon are no floats.
+// Lower limits: with smaller cells, or with a density far below that of air, masses and inertias would soon be too small for floats.
 constexpr Range kCellSize{.low = kLeastCellSize, .high = kFar};
 constexpr Range kDensity{.low = 0.001, .high = 1e6};
 constexpr Range kFriction{.low = 0, .high = 100};
@@ -31,7 +31,7 @@ constexpr Range kBreakingTurn{.low = 0, .high = 180, .low_excluded = true};  // 
 constexpr int kMostLeastCells = 1'000'000;                                   // more than any scene has
 constexpr Range kPlasticLimit{.low = 0, .high = 10, .low_excluded = true};
 
-/// At most one of the names may be given. @return whether one is.
+/// Checks that at most one of the names is given. @return whether one is
 bool one_of(const FieldReader& fields, std::initializer_list<std::string_view> names) {
   std::string_view first;
   for (const std::string_view name : names) {
@@ -45,10 +45,10 @@ bool one_of(const FieldReader& fields, std::initializer_list<std::string_view> n
   return !first.empty();
 }
 
-/// @param cell_size  whether the fields must have it
+/// @param cell_size  whether the fields must include it
 void read_fields(FieldReader& fields, Material& material, Need cell_size) {
   ppu::SoftBodySettings& s = material.settings;
-  // What is stated takes the place of what the material before said in another way.
+  // A stated field replaces what the material before stated in another way.
   if (one_of(fields, {"alpha", "frequency", "modulus"})) s.frequency.reset(), material.modulus.reset();
   if (one_of(fields, {"damping", "damping_time"})) s.damping_time.reset();
   fields.number("cell_size", s.cell_size, kCellSize, cell_size)

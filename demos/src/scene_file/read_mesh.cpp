@@ -14,7 +14,7 @@
 namespace softcell::demos {
 namespace {
 
-// Finer ones cost time and show nothing.
+// Finer meshes cost time and look the same.
 constexpr int kMaxSegments = 512, kMaxSubdivisions = 128, kMaxSquaresAlongEdge = 256;
 
 ppu::TriangleMesh sphere(FieldReader& fields) {
@@ -186,7 +186,7 @@ ppu::TriangleMesh read_mesh(FieldReader& body, MeshFiles& files) {
 }
 
 void rotate(ppu::TriangleMesh& mesh, const Eigen::Quaternionf& rotation) {
-  if (rotation.vec().isZero(0)) return;  // not a bit of it changes
+  if (rotation.vec().isZero(0)) return;  // so that not a bit of the mesh changes
   ppu::rotate(mesh, rotation.toRotationMatrix());
 }
 

@@ -8,15 +8,15 @@
 
 namespace softcell::demos {
 
-/// The field `rotation` of a body: a table of `axis` and `degrees`. @throws SceneError
+/// Reads the field `rotation` of a body: a table of `axis` and `degrees`. @throws SceneError
 Eigen::Quaternionf read_rotation(FieldReader& body);
 
-/// The mesh of a soft body or an obstacle: its field `shape`, a primitive, or `mesh`, a file, with `up`, `scale` or
-/// `longest_side`. These are the last fields that are read of the body: what else it has is refused.
+/// Reads the mesh of a soft body or an obstacle: its field `shape`, a primitive, or `mesh`, a file, with `up`, `scale` or `longest_side`.
+/// These must be the last fields that are read of the body: any others that it has are refused.
 /// @throws SceneError
 ppu::TriangleMesh read_mesh(FieldReader& body, MeshFiles& files);
 
-/// Turns a mesh about its origin, unless the rotation is none.
+/// Rotates a mesh about its origin, unless the rotation is the identity.
 void rotate(ppu::TriangleMesh& mesh, const Eigen::Quaternionf& rotation);
 
 }  // namespace softcell::demos

@@ -19,7 +19,7 @@ constexpr std::array<std::string_view, 5> kRigidShapes{"box", "sphere", "cylinde
 constexpr Range kSpin{.low = -100, .high = 100};  // rad/s
 constexpr Range kPartLength{.low = 0.001, .high = kFar};
 
-/// A table with `kind` and the lengths of that kind. @param place  it may state where in the body it is, and its colour
+/// Reads a table with `kind` and the lengths of that kind. @param place  whether it may state its pose in the body and its colour
 RigidPart read_part(const Value& value, const std::string& what, const RigidPart& usual, bool place) {
   RigidPart part = usual;
   FieldReader fields(value, what);

@@ -1,5 +1,5 @@
 #pragma once
-// Scenes from the roots of their files.
+// Reads scenes from the root tables of their files.
 
 #include <optional>
 
@@ -11,15 +11,15 @@
 
 namespace softcell::demos {
 
-/// A 3D scene. @param model  takes the place of the body that states `own_model_side`.
+/// Reads a 3D scene. @param model  replaces the body that states `own_model_side`.
 /// @throws SceneError  @throws NoPlaceForModel
 Scene read_scene_3d(FieldReader& root, const SceneSource& source, const std::optional<OwnModel>& model);
 
-/// A 2D scene. @param picture  takes the place of the body that states `own_image_side`.
+/// Reads a 2D scene. @param picture  replaces the body that states `own_image_side`.
 /// @throws SceneError  @throws NoPlaceForModel
 Scene2d read_scene_2d(FieldReader& root, const SceneSource& source, const std::optional<OwnPicture>& picture);
 
-/// One more soft body, behind those that the scene has. @throws SceneError  the scene is of no use then
+/// Adds one more soft body after those that the scene has. @throws SceneError  the scene must not be used after that
 void read_another_body(const Value& item, const SceneSource& source, Scene& scene);
 void read_another_body(const Value& item, const SceneSource& source, Scene2d& scene);
 

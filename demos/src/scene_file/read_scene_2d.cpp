@@ -24,15 +24,15 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector2f;
 
-/// Of rigid bodies: Box2D ends the process at a shape that has no area to speak of.
+/// Smallest length of rigid bodies: Box2D ends the process at a shape with almost no area.
 constexpr double kSmallest = 0.01;  // metres
 constexpr Range kRigidLength{.low = kSmallest, .high = kFar};
-/// Of a polygon's length, how far a corner lies off the other sides at least: in floats, Box2D's, a thinner
-/// one loses its corners.
+/// The least distance of a corner from the other sides, as a fraction of the polygon's length: in Box2D's floats a thinner polygon loses
+/// its corners.
 constexpr double kThinnest = 0.001;
 constexpr int kMaxCellIndex = 1'000'000;
 
-/// Four walls around the middle of the world; width and height are those of the room within.
+/// Reads four walls around the middle of the world; width and height are those of the room inside.
 void read_framework(const Value& value, Scene2d& scene) {
   Vector2f room{8, 6};
   float thickness = 0.5f;
@@ -57,7 +57,7 @@ void read_framework(const Value& value, Scene2d& scene) {
   add(lying, {0, middle.y()});
 }
 
-/// The fields that rigid bodies of all shapes have.
+/// Reads the fields that rigid bodies of all shapes have.
 RigidBody2d read_rigid_body(FieldReader& fields, const Scene2d& scene) {
   constexpr Range kAngle{.low = -100, .high = 100};
   RigidBody2d body;
@@ -91,7 +91,7 @@ std::vector<Vector2f> read_corners(FieldReader& fields) {
 
 double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
-/// Whether every corner turns left, once around in all, and lies far enough off each other side.
+/// Whether every corner turns left, once around in all, and lies far enough from each other side.
 bool is_convex(const std::vector<Vector2f>& corners) {
   const std::size_t n = corners.size();
   if (n < 3) return false;
@@ -123,9 +123,8 @@ Vector2d centroid(const std::vector<Vector2f>& corners) {
   return first + moment / area;
 }
 
-/// Has the body stand at the middle of its polygon, which stays where it is. Box2D takes an inertia about the
-/// body's position and takes away what the distance adds: of a small polygon far away nothing would be left,
-/// and it ends the process.
+/// Moves the body's position to the centroid of its polygon, which stays where it is. Box2D computes an inertia about the body's position
+/// and subtracts what the distance adds: for a small polygon far away nothing would be left, and Box2D ends the process.
 void stand_at_centroid(RigidBody2d& body, PolygonShape& polygon) {
   const Vector2d middle = centroid(polygon.corners);
   for (Vector2f& corner : polygon.corners) corner = (corner.cast<double>() - middle).cast<float>();
@@ -208,7 +207,7 @@ std::optional<Face2d> read_face(FieldReader& body) {
   return face;
 }
 
-/// A face lies on cells: what is far from all of them would swing about.
+/// Refuses a face that lies far from all cells, because it would swing about.
 void check_face(const FieldReader& fields, const SoftBody2dPlacement& body) {
   if (!body.face) return;
   const bool on_cell = std::ranges::any_of(body.cells, [&](const Eigen::Vector2i& cell) {
@@ -220,8 +219,8 @@ void check_face(const FieldReader& fields, const SoftBody2dPlacement& body) {
                      fmt::format("the face of {} has its centre on none of its cells", fields.what()));
 }
 
-/// @param picture  the user's own; null: there is none, or another body has taken it
-/// @return  whether it takes this body's place
+/// @param picture  the user's own; null: there is none, or it has replaced another body
+/// @return  whether it replaces this body
 bool read_soft_body(const Value& value, std::size_t index, LatticeFiles& lattices, const Materials& materials,
                     const OwnPicture* picture, Scene2d& scene) {
   constexpr Range kContactRadius{.low = 0.01, .high = 1};
@@ -264,7 +263,7 @@ bool read_soft_body(const Value& value, std::size_t index, LatticeFiles& lattice
   return replaced;
 }
 
-/// @return the number of particles of each
+/// @return the number of particles in each body
 std::vector<std::size_t> read_soft_bodies(std::span<const Value> items, const SceneSource& source,
                                           const Materials& materials,
                                           const std::optional<OwnPicture>& picture, Scene2d& scene) {

@@ -31,8 +31,7 @@ constexpr Range kTessellation{.low = double{kLeastTessellation}, .high = double{
 constexpr Range kTwist{.low = -1000, .high = 1000};  // rad/s
 constexpr Range kOwnModelSide{.low = kLeastCellSize * ppu::kMaxLatticeCellsPerAxis, .high = kFar};
 
-/// A floor whose upper side is at y = 0, and four walls on it. The wall towards +z, where cameras are, may be
-/// glass.
+/// Reads a floor whose upper side is at y = 0, and four walls on it. The wall towards +z, where cameras are, may be glass.
 void read_framework(const Value& value, Scene& scene) {
   float half_width = 4.5f, height = 0.9f, thickness = 0.3f, front_opacity = 1;
   auto floor_colour = render::srgb(0xB9B4A7), wall_colour = render::srgb(0x9AA7B5);
@@ -80,8 +79,7 @@ RigidBox read_box(const Value& value, std::size_t index) {
   return box;
 }
 
-/// Counts the vertices of a scene's meshes: more than a picture shows are refused before they cost anything
-/// else.
+/// Counts the vertices of a scene's meshes, so that a scene with more than a picture can show is refused before it costs anything else.
 class VertexCount {
  public:
   void add(const ppu::TriangleMesh& mesh, const Place& place) {
@@ -108,7 +106,7 @@ Obstacle read_obstacle(const Value& value, std::size_t index, MeshFiles& files) 
   return obstacle;
 }
 
-/// Puts the user's model where the body's own mesh was.
+/// Puts the user's model in place of the body's own mesh.
 void take_place(SoftBodyPlacement& body, const OwnModel& model, float longest_side) {
   const ppu::Bounds<3> box = ppu::bounds(model.mesh);
   SC_ASSERT((box.high - box.low).maxCoeff() > 0 && longest_side > 0, "a model {} long is made {} m long",
@@ -119,8 +117,7 @@ void take_place(SoftBodyPlacement& body, const OwnModel& model, float longest_si
   body.settings.cell_size = model.cell_size * scale;
 }
 
-/// Particles of the lattice that the mesh will get: a scene that asks for too many is refused here, where its
-/// file and line are known.
+/// The number of particles in the lattice that the mesh will get. A scene with too many is refused here, where its file and line are known.
 std::size_t count_particles(const SoftBodyPlacement& body, const Place& place) {
   try {
     ppu::validate(body.settings);
@@ -130,7 +127,7 @@ std::size_t count_particles(const SoftBodyPlacement& body, const Place& place) {
   }
 }
 
-/// The material with which pieces of the mesh draw what was inside. A body of one colour stays so elsewhere.
+/// Adds the material with which pieces of the mesh draw their cut faces. The rest of a body of one colour keeps its colour.
 void add_cut_material(const Vector3f& colour, SoftBodyPlacement& body) {
   ppu::TriangleMesh& mesh = body.mesh;
   if (!body.own_materials) {
@@ -142,7 +139,7 @@ void add_cut_material(const Vector3f& colour, SoftBodyPlacement& body) {
   cut.base_colour = Eigen::Vector4f(colour.x(), colour.y(), colour.z(), 1);
 }
 
-/// Has the mesh bend with the lattice. @param longest_edge  metres
+/// Splits the mesh's edges so that it bends with the lattice. @param longest_edge  metres
 void tessellate_mesh(float longest_edge, const Place& place, ppu::TriangleMesh& mesh) {
   try {
     mesh = ppu::tessellate(mesh, longest_edge);
@@ -151,7 +148,7 @@ void tessellate_mesh(float longest_edge, const Place& place, ppu::TriangleMesh& 
   }
 }
 
-/// @return whether the model has taken the body's place.
+/// @return whether the model has replaced the body.
 bool read_soft_body(const Value& value, std::size_t index, MeshFiles& files, const Materials& materials,
                     const OwnModel* model, Scene& scene) {
   FieldReader fields(value, item_name("soft body", index, stated_name(value)));
@@ -191,7 +188,7 @@ bool read_soft_body(const Value& value, std::size_t index, MeshFiles& files, con
   return replaced;
 }
 
-/// @return the number of particles of each
+/// @return the number of particles in each body
 std::vector<std::size_t> read_soft_bodies(std::span<const Value> items, MeshFiles& files,
                                           const Materials& materials, const std::optional<OwnModel>& model,
                                           VertexCount& vertices, Scene& scene) {
@@ -215,7 +212,7 @@ std::vector<std::size_t> read_soft_bodies(std::span<const Value> items, MeshFile
   return of_each;
 }
 
-/// @param first_box  where the scene's own boxes begin among all
+/// @param first_box  index of the scene's own first box among all boxes
 void read_attachments(std::span<const Value> items, std::size_t first_box, Scene& scene) {
   for (std::size_t i = 0; i < items.size(); ++i) {
     FieldReader fields(items[i], item_name("attach", i));
@@ -331,7 +328,7 @@ Scene read_scene_3d(FieldReader& root, const SceneSource& source, const std::opt
   read_script<3>(root, scene);
   read_cuts<3>(cuts, scene);
   if (camera != nullptr) read_camera(*camera, scene.camera);
-  if (camera == nullptr) scene.camera.eye = {1.9f, 2.2f, 4.2f};  // from where frame_bodies() looks
+  if (camera == nullptr) scene.camera.eye = {1.9f, 2.2f, 4.2f};  // frame_bodies() looks from this direction
   if (camera == nullptr || model) frame_bodies(scene);
   if (light != nullptr) read_light(*light, scene.light);
   if (tilt != nullptr) read_tilt(*tilt, scene.tilt);

@@ -33,10 +33,10 @@ std::vector<Value*> soft_bodies_in(Table& root) {
   return bodies;
 }
 
-/// One scene on its way to a file.
+/// A scene that is being saved.
 class SavedScene {
  public:
-  /// @param root  of the document, as it is now
+  /// @param root  of the document, with the present values
   SavedScene(const SceneDocument& document, Table root, const fs::path& scene_file)
       : document_(document),
         root_(std::move(root)),
@@ -46,10 +46,10 @@ class SavedScene {
   Table& root() { return root_; }
   std::vector<Value*> soft_bodies() { return soft_bodies_in(root_); }
 
-  /// The file of the command line as a scene there names it.
+  /// The name of the command line's file in the saved scene.
   std::string own_file() const { return relative(document_.own->file); }
 
-  /// A file that a body names, which the saved scene must find, too.
+  /// Keeps a file that a body names, which the saved scene must find as well.
   void keep_file(Table& item, std::string_view field) {
     Value* const value = find_field(item, field);
     if (value == nullptr) return;
@@ -108,7 +108,7 @@ class SavedScene {
   std::vector<SceneFile> copies_;
 };
 
-/// The body has the fields of its material itself, so that it can leave some out.
+/// Copies the fields of the body's material into the body itself, so that the body can leave some out.
 void copy_material_into(Table& body, Table& root) {
   const Value* const name = find_field(body, "material");
   if (name == nullptr) return;
@@ -116,7 +116,7 @@ void copy_material_into(Table& body, Table& root) {
   const Value* const material = find_field(materials, std::get<std::string>(name->data));
   SC_ASSERT(material != nullptr, "a soft body of a material '{}' that its scene lacks",
             std::get<std::string>(name->data));
-  // Fields that say the same in different ways: with one of them the body has no use for the others.
+  // Fields that state the same thing in different ways: with one of them the body does not need the others.
   static constexpr std::array<std::array<std::string_view, 3>, 2> kAlternatives{
       {{"alpha", "frequency", "modulus"}, {"damping", "damping_time", ""}}};
   const auto says = [&body](std::string_view field) {
@@ -145,7 +145,7 @@ void save_plasticity(Table& body, const std::optional<ppu::Plasticity>& plastici
   set_field(table, "limit", number_value(plasticity->limit));
 }
 
-/// What sliders have changed of a body's material, in place of what its material says.
+/// Replaces in a body's material what the user has changed by sliders.
 void save_material(Table& body, Table& root, const ppu::SoftBodySettings& was,
                    const ppu::SoftBodySettings& now, bool other_substeps) {
   if (now.alpha != was.alpha || now.frequency != was.frequency || (other_substeps && !now.frequency)) {
@@ -169,11 +169,11 @@ void save_material(Table& body, Table& root, const ppu::SoftBodySettings& was,
             was.cell_size);
 }
 
-/// Names the file of the command line in the first body that lets one take its place, and which other files the bodies need.
-/// @param side      the field of a body that lets a file take its place: how long that is
+/// Names the command line's file in the first body that it can replace, and keeps the other files that the bodies need.
+/// @param side      the field by which a body lets a file replace it: the length of the file's model
 /// @param own       the field that names the file
-/// @param replaced  fields that the file is in place of
-/// @param others    fields of the other bodies that name files
+/// @param replaced  the fields that the file replaces
+/// @param others    the fields of the other bodies that name files
 template <class SceneOf>
 void save_files_of_bodies(const SceneOf& scene, SavedScene& saved, std::string_view side,
                           const std::string& own, std::initializer_list<std::string_view> replaced,
@@ -218,7 +218,7 @@ template <int Dimension, class SceneOf>
 Table root_now(const SceneOf& scene, const PresentScene<Dimension>& now) {
   require_document(scene.document, scene.name);
   Table root = std::get<Table>(scene.document->root.data);
-  erase_fields(root, {"pictures", "begin"});  // they are of other frames
+  erase_fields(root, {"pictures", "begin"});  // they belong to other frames
   Table& world = table_in(root, "world");
   SC_ASSERT(now.moment.gravity, "a moment of scene '{}' without gravity", scene.name);
   if (is_downwards(*now.moment.gravity))

@@ -61,7 +61,7 @@ std::variant<Scene, Scene2d> read_scene(const SceneSource& source,
   return scene;
 }
 
-/// What a script returns for a scene to use: see read_lattice_2d.h.
+/// Whether a script returns a lattice for a scene to use: see read_lattice_2d.h.
 bool is_lattice(const Value& document) {
   const Table* const table = std::get_if<Table>(&document.data);
   return table != nullptr && std::ranges::any_of(*table, [](const Field& field) {
@@ -92,7 +92,7 @@ const std::vector<SceneListing>& list_scenes() {
 
 namespace {
 
-/// None: it is no scene of that dimension.
+/// None: the file is no scene of that dimension.
 std::optional<std::string> title_of(const std::filesystem::path& file, int dimension) {
   constexpr std::uintmax_t kMostBytes = std::uintmax_t{1} << 20;
   std::error_code error;

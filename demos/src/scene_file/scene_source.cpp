@@ -33,7 +33,7 @@ bool is_below(const fs::path& path, const fs::path& folder) {
   return rest == folder.end();
 }
 
-/// Control characters would garble the sentence that quotes the name.
+/// False for a name with control characters, which would garble a message that quotes it.
 bool is_printable(const std::string& name) {
   return std::none_of(name.begin(), name.end(),
                       [](char c) { return std::iscntrl(static_cast<unsigned char>(c)) != 0; });
@@ -43,7 +43,7 @@ bool is_printable(const std::string& name) {
 
 SceneSource SceneSource::find(std::string_view name_or_file) {
   SceneSource source;
-  // By its file, not by list_scenes(): that reads every scene, and runs those in Lua.
+  // By its file, not by list_scenes(), which would read every scene and run those in Lua.
   for (const std::string_view ending : {".toml", ".lua"}) {
     const std::string file = fmt::format("{}{}", name_or_file, ending);
     if (const base::EmbeddedFile* embedded = base::find_embedded(embedded_scenes(), file)) {

@@ -20,16 +20,16 @@ namespace softcell::demos {
 namespace {
 
 constexpr std::string_view kStateTitle = "softcell state 1";
-// A body that is thrown through a whole scene in a frame has no use for more.
+// Faster than a body that is thrown through a whole scene in one frame.
 constexpr double kMaxStateSpeed = 1e5;  // m/s, and rad/s
 
-/// Positions and velocities of a particle, or all of a rigid body, as one row of numbers.
+/// The length of a row of numbers: position and velocity of a particle, or the whole state of a rigid body.
 template <int Dimension>
 constexpr std::size_t kParticleNumbers = 2 * static_cast<std::size_t>(Dimension);
 template <int Dimension>
 constexpr std::size_t kRigidNumbers = Dimension == 3 ? 13 : 6;
 
-/// The shortest text that reads back as the same numbers.
+/// Writes the shortest text that reads back as the same numbers.
 void append_numbers(std::string& text, std::span<const float> numbers) {
   fmt::format_to(std::back_inserter(text), "{}\n", fmt::join(numbers, " "));
 }
@@ -55,7 +55,7 @@ std::array<float, kRigidNumbers<Dimension>> numbers_of(const typename Beginning<
   }
 }
 
-/// Takes the text apart: lines, and in a line words with one space between them.
+/// Splits the text into lines, and a line into words with one space between them.
 class StateReader {
  public:
   explicit StateReader(std::string_view text) : text_(text) {}
@@ -63,7 +63,7 @@ class StateReader {
   [[noreturn]] void refuse(const std::string& what) const {
     throw std::runtime_error(fmt::format("line {}: {}", number_, what));
   }
-  /// The next line becomes the one that is read. @return false: there is none
+  /// Goes on to the next line. @return false: there is none
   bool next_line() {
     if (at_ >= text_.size()) return false;
     const std::size_t end = std::min(text_.find('\n', at_), text_.size());

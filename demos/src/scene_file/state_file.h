@@ -1,5 +1,5 @@
 #pragma once
-// The file beside a saved scene: positions and velocities of what moves in it. docs/reference/scenes.md describes it.
+// The file beside a saved scene: positions and velocities of everything that moves in it. docs/reference/scenes.md describes it.
 
 #include <cstddef>
 #include <string>
@@ -9,20 +9,20 @@
 
 namespace softcell::demos {
 
-/// Longer files are not read: more than a scene's particles take.
+/// Longer files are not read: this is more than the particles of any scene need.
 inline constexpr std::size_t kMaxStateBytes = std::size_t{64} << 20;
 
-/// Soft bodies, rigid bodies and ended attachments of a moment; what else it has is in the scene file.
-/// @throws std::runtime_error  a body is farther away or faster than a scene may say; one sentence.
+/// Writes the soft bodies, rigid bodies and ended attachments of a moment; the rest of the moment is in the scene file.
+/// @throws std::runtime_error  a body is farther away or faster than a scene file may state; one sentence.
 template <int Dimension>
 std::string state_to_text(const Beginning<Dimension>& moment);
 
-/// Reads that. All numbers are finite and in range; whether they fit a scene, the caller finds out.
+/// Reads such a text. All numbers are finite and in range; the caller checks whether they fit the scene.
 /// @throws std::runtime_error  one sentence: the line, what is wrong there, and what is expected.
 template <int Dimension>
 Beginning<Dimension> parse_state(std::string_view text);
 
-/// Of all lines before the last, which carries it.
+/// The checksum of all lines before the last, which contains it.
 std::uint64_t state_checksum(std::string_view lines);
 
 }  // namespace softcell::demos

@@ -1,5 +1,5 @@
 #pragma once
-// What of a scene's beginning, or of a moment of its run, is the same in both dimensions.
+// The parts of saving and restoring a moment of a run that are the same in both dimensions.
 
 #include <fmt/format.h>
 
@@ -28,7 +28,7 @@ typename Controls<Dimension>::Initial initial_controls(const SceneOf& scene) {
   return initial;
 }
 
-/// Why a moment of a run is none to begin with.
+/// The error message for a moment at which a body has broken: no scene can begin with it.
 inline std::string has_broken(const std::string& scene, const std::string& body) {
   return fmt::format(
       "the scene {} cannot be saved or changed: '{}' has broken, and a scene file has whole bodies only; "
@@ -36,8 +36,8 @@ inline std::string has_broken(const std::string& scene, const std::string& body)
       scene, body);
 }
 
-/// Puts the particles where the scene begins with them.
-/// @throws std::runtime_error  the state is of another body
+/// Moves a body's particles to where the scene begins with them.
+/// @throws std::runtime_error  the state belongs to another body
 template <int Dimension>
 void put(ppu::SoftBody<Dimension>& body, const typename Beginning<Dimension>::SoftBody& state,
          const std::string& name) {
@@ -55,7 +55,7 @@ void put(ppu::SoftBody<Dimension>& body, const typename Beginning<Dimension>::So
   body = moved;
 }
 
-/// The same for all soft bodies of a scene, but for those that were added at this moment: they are where they are placed.
+/// The same for all soft bodies of a scene, except those added at this moment: they stay where they are placed.
 template <int Dimension, class SceneOf, class Bodies>
 void put_soft_bodies(const SceneOf& scene, Bodies& bodies) {
   const Beginning<Dimension>& begin = *scene.begin;
@@ -66,7 +66,7 @@ void put_soft_bodies(const SceneOf& scene, Bodies& bodies) {
     put<Dimension>(bodies[b], begin.soft_bodies[b], scene.soft_bodies[b].name);
 }
 
-/// @throws std::runtime_error  the saved state of a scene's rigid bodies is not of `moving` of them
+/// @throws std::runtime_error  the number of rigid bodies in the scene's saved state is not `moving`
 template <class SceneOf>
 void check_moving_bodies(const SceneOf& scene, std::size_t moving) {
   if (scene.begin->rigid_bodies.size() == moving) return;
@@ -75,7 +75,7 @@ void check_moving_bodies(const SceneOf& scene, std::size_t moving) {
                   moving, scene.begin->rigid_bodies.size()));
 }
 
-/// Ends the attachments that have ended before the scene begins. @param attachments  of the scene, in order
+/// Ends the attachments that had ended before the scene begins. @param attachments  of the scene, in order
 /// @throws std::runtime_error  the scene has fewer
 template <class SceneOf, class Bodies>
 void end_attachments(const SceneOf& scene, const std::vector<ppu::AttachmentId>& attachments,

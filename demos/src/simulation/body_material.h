@@ -10,21 +10,21 @@
 
 namespace softcell::demos {
 
-/// What a soft body is made of, with substeps of the present length.
+/// The present material of a soft body, with substeps of their present length.
 struct BodyMaterial {
-  std::string name;                ///< the body's
+  std::string name;                ///< of the body
   float alpha = 0;                 ///< 0..1
-  std::optional<float> frequency;  ///< Hz, if that is what was stated
+  std::optional<float> frequency;  ///< Hz, if the scene or the user states it
   float modulus = 0;               ///< m^2/s^2
-  float most_modulus = 0;          ///< m^2/s^2, of alpha 1
+  float most_modulus = 0;          ///< m^2/s^2, with alpha 1
   float damping = 0;               ///< 0..1
   float friction = 0;
   float density = 0;                          ///< kg/m^3; in 2D kg/m^2
   std::optional<ppu::Plasticity> plasticity;  ///< none: it is elastic
-  bool can_be_plastic = false;                ///< it has few enough particles
+  bool can_be_plastic = false;                ///< whether it has few enough particles for that
 };
 
-/// @param step  seconds of a substep
+/// @param step  seconds per substep
 template <int Dimension>
 BodyMaterial material_of(std::string name, const ppu::SoftBody<Dimension>& body, float step) {
   const ppu::SoftBodySettings& settings = body.settings();

@@ -1,5 +1,5 @@
 #pragma once
-// What an event makes of a soft body's material.
+// Applies an event to the material of a soft body.
 
 #include <algorithm>
 
@@ -11,7 +11,7 @@
 
 namespace softcell::demos {
 
-/// @param event  of Action::kAlpha, kFrequency, kModulus, kDamping, kFriction, kYield or kCreep  @param step  seconds of a substep
+/// @param event  with Action::kAlpha, kFrequency, kModulus, kDamping, kFriction, kYield or kCreep  @param step  seconds per substep
 template <int Dimension>
 ppu::SoftBodySettings changed_material(const ppu::SoftBody<Dimension>& body,
                                        const InputEvent<Dimension>& event, float step) {

@@ -12,9 +12,10 @@
 
 namespace softcell::demos {
 
-/// Cuts bodies of a world, with what is left of them before. Pieces come some substeps later or, if `at_once`, behind all other bodies.
-/// @param sources     of each body: the scene's body that it is, or is a piece of
-/// @param source      the scene's body whose pieces are cut; none: all bodies are
+/// Cuts bodies of a world, the pieces that they have broken into included. New pieces appear some substeps later or, if `at_once`, at once,
+/// after all other bodies.
+/// @param sources     for each body the scene's body that it is, or is a piece of
+/// @param source      the scene's body that is cut with its pieces; none: all bodies are cut
 /// @tparam SoftBodies BulletSoftBodies or Box2dSoftBodies   @tparam Where  its Cut or Cut2d
 template <class SoftBodies, class Where>
 void cut_bodies(SoftBodies& bodies, std::span<const std::size_t> sources, std::optional<std::size_t> source,
@@ -30,7 +31,7 @@ void cut_bodies(SoftBodies& bodies, std::span<const std::size_t> sources, std::o
   }
 }
 
-/// What a scene cuts at the beginning of a frame. @param cut  takes where, and the scene's body
+/// Makes the cuts that a scene plans for the beginning of a frame. @param cut  takes a cut and the number of the scene's body
 template <int Dimension, class Cut>
 void cut_as_planned(const std::vector<ScriptedCut<Dimension>>& cuts, std::int64_t at_frame, const Cut& cut) {
   for (const ScriptedCut<Dimension>& planned : cuts)

@@ -1,13 +1,13 @@
 #pragma once
-// What the library refuses of a scene, said of the part of the scene that it is about.
+// Adds to an error of the library the part of the scene that it concerns.
 
 #include <stdexcept>
 #include <string>
 
 namespace softcell::demos {
 
-/// @param described  the part: "arena.toml:12:1: soft body 3"; empty: a scene that no file describes
-/// @throws std::runtime_error  `work` threw one, or std::invalid_argument: the same sentence behind the description.
+/// @param described  the part: "arena.toml:12:1: soft body 3"; empty: no file describes the scene
+/// @throws std::runtime_error  `work` threw one, or std::invalid_argument: its message, after the description.
 template <class Work>
 auto describe_refusal(const std::string& described, Work&& work) {
   const auto sentence = [&](const std::exception& refusal) {

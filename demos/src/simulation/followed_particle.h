@@ -1,5 +1,5 @@
 #pragma once
-// Where a particle is after its body has broken.
+// Finds out where a particle is after its body has broken.
 
 #include <algorithm>
 #include <cstddef>
@@ -11,14 +11,14 @@
 
 namespace softcell::demos {
 
-/// A particle that becomes several at a crack is followed to the first piece that has it: the largest, if that does.
+/// If a crack turns one particle into several, follows the one in the first piece that has it: the largest piece, if that one does.
 template <int Dimension>
 struct FollowedParticle {
   ppu::SoftBody<Dimension>* body = nullptr;  ///< null: the piece that had the particle has vanished
   std::uint32_t number = 0;
 
-  /// @param broken  in the order in which it happened
-  /// @return whether it has another number, is of another body, or has vanished
+  /// @param broken  in the order in which the bodies broke
+  /// @return whether the particle has another number, is in another body, or has vanished
   bool follow(std::span<const ppu::BrokenBody<Dimension>> broken) {
     bool changed = false;
     for (const ppu::BrokenBody<Dimension>& one : broken)

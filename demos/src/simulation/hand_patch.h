@@ -17,15 +17,15 @@
 
 namespace softcell::demos {
 
-/// The particles around one of a body, with a tenth of the body's mass together, weighted: a patch is as large to the eye on a lattice of 100
-/// particles as on one of 20,000.
+/// The particles around one particle of a body, with smooth weights; their weighted mass is a tenth of the body's. So a patch looks equally
+/// large on a lattice of 100 particles and on one of 20,000.
 template <int Dimension>
 struct HandPatch {
   static constexpr double kMassShare = 0.1;  // of the body's, weighted
   static constexpr double kLeastRadiusInCells = 1.5;
 
-  std::vector<float> weights;  ///< of each particle: 1 at the middle, 0 from the radius on, smooth
-  float radius = 0;            ///< metres, along the body
+  std::vector<float> weights;  ///< for each particle, smooth: 1 at the middle, 0 from the radius on
+  float radius = 0;            ///< metres, measured through the body
   double mass = 0;             ///< kg: sum m w
 
   /// @param middle  a particle  @pre the body has it
@@ -40,7 +40,7 @@ struct HandPatch {
       for (std::size_t i = 0; i < masses.size(); ++i) sum += double{masses[i]} * weight_at(distances[i], at);
       return sum;
     };
-    // A lattice may be in pieces.
+    // A lattice may consist of unconnected pieces, of which the patch has only one.
     double reached = 0;
     for (std::size_t i = 0; i < masses.size(); ++i)
       if (std::isfinite(distances[i])) reached += double{masses[i]};
@@ -66,7 +66,7 @@ struct HandPatch {
     return rest * rest;
   }
 
-  /// From one particle to all others along links, at rest: what is near in space only, such as the other leg, is far.
+  /// Distances from one particle to all others along links, at rest: what is near in space only, such as the other leg, is far.
   static std::vector<double> distances_through(const ppu::Lattice<Dimension>& lattice, std::uint32_t from) {
     std::vector<double> distances(lattice.particles.size(), std::numeric_limits<double>::infinity());
     SC_ASSERT(from < distances.size(), "a hand holds particle {} of {}", from, distances.size());
@@ -90,12 +90,12 @@ struct HandPatch {
   }
 };
 
-/// What a hand holds of a soft body, so that it can be pinned there.
+/// The part of a soft body that a hand holds, and that can be pinned.
 template <int Dimension>
 struct HeldPart {
   const ppu::SoftBody<Dimension>* body = nullptr;
   Eigen::Vector<float, Dimension> point = Eigen::Vector<float, Dimension>::Zero();  ///< metres, as it is now
-  float radius = 0;                      ///< metres: of the hand's patch
+  float radius = 0;                      ///< metres, of the hand's patch
   std::vector<std::uint32_t> particles;  ///< those that a pin holds, ascending
 
   HeldPart(const ppu::SoftBody<Dimension>& held, const HandPatch<Dimension>& patch,
@@ -106,18 +106,18 @@ struct HeldPart {
   }
 
  private:
-  // Two thirds of the radius; in the smallest patch still all neighbours along the axes, so that none is flat.
+  // This includes two thirds of the radius; in the smallest patch it still includes all neighbours along the axes, so that no part is flat.
   static constexpr float kLeastWeight = 0.3f;
 };
 
-/// The shape to which a held body would return: that of its model, or its own one if it has yielded (ppu::Plasticity).
+/// The shape to which a held body would return: that of its model, or its own shape if it has yielded (ppu::Plasticity).
 template <int Dimension>
 struct HeldRest {
-  std::vector<Eigen::Matrix<float, Dimension, 1>> positions;  ///< of its particles, metres
+  std::vector<Eigen::Matrix<float, Dimension, 1>> positions;  ///< of the body's particles, metres
   Eigen::Vector<double, Dimension> centre = Eigen::Vector<double, Dimension>::Zero();  ///< of its mass
 
   explicit HeldRest(const ppu::SoftBody<Dimension>& body) { take(body); }
-  /// Looks whether the body has yielded since. Allocates if it has.
+  /// Updates the shape if the body has yielded since; only then does it allocate.
   void renew(const ppu::SoftBody<Dimension>& body) {
     if (body.rest_revision() != revision_) take(body);
   }

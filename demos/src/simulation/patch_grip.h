@@ -1,5 +1,5 @@
 #pragma once
-// How a hand pulls a soft body by a point of it, in either dimension: by a patch, which gives, and never so hard that the body tears.
+// How a hand pulls a soft body at a point, in either dimension: by a patch, which gives, and never so hard that the body tears.
 
 #include <Eigen/Core>
 #include <Eigen/LU>
@@ -20,17 +20,17 @@ template <int Dimension>
 struct HeldPoint {
   using Vector = Eigen::Vector<double, Dimension>;
   Vector position = Vector::Zero(), velocity = Vector::Zero(), at_rest = Vector::Zero();
-  double patch_share = 1;  ///< the change of its velocity when each particle gets its weight
+  double patch_share = 1;  ///< the change of its velocity when each particle's velocity changes by its weight
 };
 
-/// The patch of a body around what a hand holds.
+/// Pulls a body by the patch around the point that a hand holds.
 ///
-/// The impulse J that moves the held point as the hand wants is limited by the body's mass. It reaches the body in two ways:
+/// The body's mass limits the impulse J that moves the held point as the hand wants. J acts on the body in two ways:
 ///
 ///     patch:  dv_i = (1 - s) J w_i / sum m w        w falls from 1 at the point to 0 at the patch's rim
 ///     body:   dv_i = s (J / M + I^-1 (r x J) x r_i)  as if the body were rigid, which deforms nothing
 ///
-/// The share s grows to 1 as the point comes out of its place in the body: the patch is pulled out so far and no farther.
+/// The share s grows to 1 as the point leaves its place in the body: the patch is pulled out only so far.
 ///
 /// One thread uses it. Allocates in the constructor, and when the body yields. Deterministic.
 template <int Dimension>
@@ -39,18 +39,18 @@ class PatchGrip {
   using Vector = Eigen::Vector<double, Dimension>;
   using Matrix = Eigen::Matrix<double, Dimension, Dimension>;
 
-  /// @param middle  a particle  @pre the body has it, and outlives this
+  /// @param middle  a particle  @pre the body has it, and outlives this object
   PatchGrip(ppu::SoftBody<Dimension>& body, std::uint32_t middle)
       : body_(body), patch_(body.model(), middle), rest_(body) {}
 
   const HandPatch<Dimension>& patch() const { return patch_; }
-  /// The shape at rest, of now.
+  /// The present rest shape.
   const HeldRest<Dimension>& rest() {
     rest_.renew(body_);
     return rest_;
   }
 
-  /// Grip::pull() at a point of the body as it is now. @pre step > 0
+  /// Does the work of Grip::pull() for a point of the body as it is now. @pre step > 0
   void pull(const HeldPoint<Dimension>& held, const HandMotion<Dimension>& hand,
             const Eigen::Vector<float, Dimension>& gravity, float step) {
     SC_ASSERT(step > 0, "a substep of {} s", step);
@@ -58,7 +58,7 @@ class PatchGrip {
     const Whole whole(body_, rest());
     const Vector arm = held.position - whole.centre;
 
-    // What is left of its swinging about the hand.
+    // Damps the swinging about the hand.
     const double most = h * Strength::most_acceleration(gravity), damped = Strength::damped_share(h);
     const Vector drag =
         Strength::limited(damped * (hand.velocity.template cast<double>() - whole.velocity), most);
@@ -89,7 +89,7 @@ class PatchGrip {
     }
   }
 
-  /// Grip::let_go().
+  /// Does the work of Grip::let_go().
   void let_go(const Eigen::Vector<float, Dimension>& velocity) {
     const Vector of_body = Whole(body_, rest()).velocity;
     body_.add_velocity(Strength::throw_aid(velocity.template cast<double>(), of_body).template cast<float>());
@@ -99,12 +99,12 @@ class PatchGrip {
   using Whole = WholeBody<Dimension>;
   using Strength = HandStrength<Dimension>;
 
-  // As soft as can be without turning cells inside out, tried on 16 bodies of 117 to 22,209 particles that just stand
-  // on the floor by themselves: with a rigid share of 0.5, cells of three of them turn.
+  // The smallest tried value that turned no cells inside out on 16 bodies of 117 to 22,209 particles that just stand on the floor by
+  // themselves. With a rigid share of 0.5, cells of three of them turn.
   static constexpr double kLeastRigidShare = 0.85;
-  static constexpr double kMostPullOut = 0.2;  // of the patch's radius: there the rigid share is 1
+  static constexpr double kMostPullOut = 0.2;  // of the patch's radius: at this distance the rigid share is 1
   static constexpr double kMostKick =
-      0.03;  // of it, that an impulse moves the patch in a substep against the body
+      0.03;  // of the patch's radius: how far an impulse may move the patch against the body in a substep
 
   ppu::SoftBody<Dimension>& body_;
   HandPatch<Dimension> patch_;

@@ -1,5 +1,5 @@
 #pragma once
-// What a user sees of a particle that a hand has taken hold of, and of its region, or of a contact.
+// The values that a user sees of a particle of which a hand has taken hold and of its region, or of a contact.
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -13,13 +13,13 @@
 
 namespace softcell::demos {
 
-/// Of one moment. In two dimensions the last number of each vector is 0.
+/// The particle at one moment. In two dimensions the last number of each vector is 0.
 struct PickedParticle {
   std::uint32_t body = 0, particle = 0;
   Eigen::Vector3f position{0, 0, 0}, velocity{0, 0, 0};  ///< m, m/s
   float mass = 0;                                        ///< kg
-  std::size_t region = 0;                                ///< particles of its region
-  float region_mass = 0;                                 ///< kg, of them together
+  std::size_t region = 0;                                ///< particles in its region
+  float region_mass = 0;                                 ///< kg, of all particles in its region
   Eigen::Vector3f region_velocity{0, 0, 0};              ///< m/s, of their centre of mass
 };
 
@@ -28,9 +28,9 @@ struct PickedContact {
   std::string first, second;  ///< what the two bodies are called
   Eigen::Vector3f position{0, 0, 0};
   Eigen::Vector3f normal{0, 1, 0};  ///< unit length, from the second body to the first
-  /// Kg m/s along the normal, in the last substep; 0: they do not press on each other now.
+  /// kg m/s along the normal, in the last substep; 0: they do not press on each other now.
   float impulse = 0;
-  float force = 0;  ///< N: the impulse over the substep
+  float force = 0;  ///< N: the impulse divided by the substep
 };
 
 /// @pre  the body has the particle
@@ -44,7 +44,7 @@ PickedParticle picked_particle(const ppu::SoftBody<Dimension>& body, std::uint32
     for (int axis = 0; axis < Dimension; ++axis) result[axis] = v[axis];
     return result;
   };
-  // As find_regions(), for one.
+  // Like find_regions(), for one region.
   std::vector<std::uint32_t> region{particle};
   std::vector<bool> known(model.particles());
   known[particle] = true;

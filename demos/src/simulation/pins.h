@@ -1,5 +1,5 @@
 #pragma once
-// Pins: parts of soft bodies that hands have left where they are in the world, in either dimension.
+// Pins: hands have left these parts of soft bodies where they are in the world, in either dimension.
 
 #include <fmt/format.h>
 
@@ -20,8 +20,8 @@
 
 namespace softcell::demos {
 
-/// What a hand of either kind holds of a soft body. None: nothing, or a rigid body.
-/// @param hands   those at particles  @param bodies  of these: see Hands
+/// The part of a soft body that a hand of either kind holds. None: the hand holds nothing, or a rigid body.
+/// @param hands   those that hold particles  @param bodies  those that `hands` refers to: see Hands
 template <int Dimension, class Bodies>
 std::optional<HeldPart<Dimension>> part_held_by(std::uint32_t hand, const HeldBodies<Dimension>& held,
                                                 const Hands<Dimension>& hands, const Bodies& bodies) {
@@ -35,14 +35,15 @@ std::optional<HeldPart<Dimension>> part_held_by(std::uint32_t hand, const HeldBo
   return std::nullopt;
 }
 
-/// Welds to the world. One that breaks, or loses its body, is gone by itself. One thread uses it.
+/// Pins are welds to the world. One that breaks, or loses its body, ends by itself. One thread uses it.
 /// @tparam Dimension  2 or 3. `SoftBodies` is BulletSoftBodies or Box2dSoftBodies, always the same one.
 template <int Dimension>
 class Pins {
  public:
   using SavedPin = typename Beginning<Dimension>::Pin;
 
-  /// One more than kMostPins takes the place of the oldest. No effect: a part that is crushed flat, which nothing can hold.
+  /// Adds a pin. If there are kMostPins already, it replaces the oldest one. No effect if the part is crushed flat, since nothing can hold
+  /// that.
   /// @param source  the scene's body that the body is, or is a piece of
   template <class SoftBodies>
   void add(SoftBodies& bodies, std::size_t source, const HeldPart<Dimension>& part) {
@@ -57,8 +58,8 @@ class Pins {
       return;
     }
   }
-  /// Those of a moment of a run, in place of all others.
-  /// @param bodies  where they were at that moment  @throws std::runtime_error  one of them cannot be
+  /// Replaces all pins by those of a saved moment.
+  /// @param bodies  as they were at that moment  @throws std::runtime_error  one of the pins cannot be made
   template <class SoftBodies>
   void put(SoftBodies& bodies, const std::vector<SavedPin>& pins) {
     remove(bodies, kEveryBody);
@@ -71,7 +72,7 @@ class Pins {
       }
     }
   }
-  /// @param source  as above; kEveryBody: all pins go
+  /// @param source  as above; kEveryBody: removes all pins
   template <class SoftBodies>
   void remove(SoftBodies& bodies, std::size_t source) {
     forget_ended(bodies);
@@ -81,10 +82,10 @@ class Pins {
       return true;
     });
   }
-  /// Their world is gone.
+  /// Call it when their world is gone.
   void forget() { pins_.clear(); }
 
-  /// Those that hold.
+  /// The pins that still hold.
   template <class SoftBodies>
   std::vector<SavedPin> saved(const SoftBodies& bodies) const {
     std::vector<SavedPin> saved;
@@ -92,7 +93,7 @@ class Pins {
       if (bodies.attachment(pin.id)) saved.push_back(pin.saved);
     return saved;
   }
-  /// Appends the heads of those that hold.
+  /// Appends the heads of the pins that still hold.
   template <class SoftBodies>
   void append(const SoftBodies& bodies, std::vector<ShownRope<Dimension>>& ropes) const {
     for (const Pin& pin : pins_)
@@ -102,7 +103,7 @@ class Pins {
  private:
   struct Pin {
     ppu::AttachmentId id;
-    SavedPin saved;  // a pin stays where it is
+    SavedPin saved;  // of the moment at which it was made: a pin does not move
   };
 
   template <class SoftBodies>
@@ -114,7 +115,7 @@ class Pins {
     std::erase_if(pins_, [&](const Pin& pin) { return !bodies.attachment(pin.id); });
   }
 
-  /// A short thick rope is a round head.
+  /// Draws a pin's round head as a short thick rope.
   static ShownRope<Dimension> drawn(const SavedPin& pin) {
     const float thickness = kThickness * pin.radius;
     return {.ends = {pin.point, pin.point + kHeight * thickness * Eigen::Vector<float, Dimension>::Unit(1)},

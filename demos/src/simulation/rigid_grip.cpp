@@ -16,7 +16,7 @@ using Eigen::Vector3f;
 
 namespace {
 
-/// A recording may name any point: no hand holds a body beside it.
+/// Moves a point into the body's box: a recording may name any point, but no hand may hold a body by a point outside of it.
 Vector3f near_body(const btRigidBody& body, const Vector3f& point) {
   btVector3 low, high;
   body.getAabb(low, high);

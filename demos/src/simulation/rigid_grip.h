@@ -1,5 +1,5 @@
 #pragma once
-// How a hand holds a rigid body: by a point of it.
+// A hand's hold on a rigid body, at one of its points.
 
 #include <Eigen/Core>
 
@@ -12,7 +12,7 @@ namespace softcell::demos {
 /// One thread uses it.
 class RigidGrip final : public Grip<3> {
  public:
-  /// @param body   moves, and outlives this  @param point  metres, in the world
+  /// @param body   is dynamic, and must outlive this object  @param point  metres, in the world
   RigidGrip(btRigidBody& body, const Eigen::Vector3f& point);
 
   Eigen::Vector3f point() const override;

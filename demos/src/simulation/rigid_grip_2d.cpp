@@ -19,7 +19,7 @@ Vector2d cross(double omega, const Vector2d& r) { return omega * Vector2d(-r.y()
 b2Vec2 to_box2d_vector(const Vector2f& v) { return {v.x(), v.y()}; }
 Vector2f from_box2d(const b2Vec2& v) { return {v.x, v.y}; }
 
-/// A recording may name any point: no hand holds a body beside it.
+/// Moves a point into the body's box: a recording may name any point, but no hand may hold a body by a point outside of it.
 Vector2f near_body_2d(const b2Body& body, const Vector2f& point) {
   Eigen::AlignedBox2f box;
   for (const b2Fixture* fixture = body.GetFixtureList(); fixture != nullptr; fixture = fixture->GetNext()) {

@@ -1,5 +1,5 @@
 #pragma once
-// How a hand holds a rigid body of two dimensions: by a point of it.
+// A hand's hold on a rigid body in two dimensions, at one of its points.
 
 #include <Eigen/Core>
 
@@ -12,7 +12,7 @@ namespace softcell::demos {
 /// One thread uses it.
 class RigidGrip2d final : public Grip<2> {
  public:
-  /// @param body   moves, and outlives this  @param point  metres, in the world
+  /// @param body   is dynamic, and must outlive this object  @param point  metres, in the world
   RigidGrip2d(b2Body& body, const Eigen::Vector2f& point);
 
   Eigen::Vector2f point() const override;

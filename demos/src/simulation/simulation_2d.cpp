@@ -103,7 +103,7 @@ b2Body* add_rigid_body(b2World& world, const RigidBody2d& rigid, float friction,
   return body;
 }
 
-/// Everything that moves. A reset makes it anew, so that nothing is left of what was: no contact, no impulse.
+/// Everything that moves. A reset makes a new one, so that no contact or impulse is left over.
 struct World {
   World(const Scene2d& scene, const Models& models, ppu::SoftBodySolver<2>& solver,
         ppu::ContactMethod contacts, std::shared_ptr<ppu::ContactWorker> worker)
@@ -127,7 +127,7 @@ struct World {
     if (scene.begin) begin(scene);
   }
 
-  /// Rigid bodies that sleep do not notice by themselves that it changes; soft ones do.
+  /// Sleeping rigid bodies do not notice a change of gravity by themselves, so they are woken; soft bodies do notice it.
   void set_gravity(const b2Vec2& gravity) {
     if (gravity == world.GetGravity()) return;
     world.SetGravity(gravity);
@@ -153,7 +153,7 @@ struct World {
     }
   }
 
-  /// The scene begins with a moment of a run.
+  /// Puts everything where the scene begins, if that is a moment of a run.
   void begin(const Scene2d& scene) {
     put_soft_bodies<2>(scene, soft_bodies);
     const auto moves = [](const b2Body* body) { return body->GetType() == b2_dynamicBody; };
@@ -190,7 +190,7 @@ struct Spes {
     attach_image = options.kernel("attach");
   }
 
-  /// Whoever steps the bodies has their contacts, too.
+  /// The contacts of the bodies are computed where the bodies are stepped.
   std::shared_ptr<ppu::ContactWorker> make_contact_worker() {
     if (!contact_find) return nullptr;
     return std::make_shared<ppu::SpeContacts>(
@@ -254,25 +254,25 @@ struct Simulation2d::State {
     if (event.body < scene.rigid_bodies.size() && scene.rigid_bodies[event.body].mass > 0)
       held.hold(event.hand, std::make_unique<RigidGrip2d>(*world->rigid_bodies[event.body], event.value));
   }
-  /// Of a body and of all of its pieces, once.
+  /// Sets the material of a body and of all of its pieces, each once.
   void set_material(const InputEvent<2>& event, std::size_t body) {
     if (event.body != kEveryBody && body >= models.size()) return;
     for (std::size_t b = 0; b < bodies.size(); ++b)
       if (event.body == kEveryBody ? b == body : sources[b] == body)
         bodies[b].set_material(changed_material(bodies[b], event, substep()));
   }
-  /// What a user or a recording cuts. No effect: a way of no length.
+  /// Cuts for a user or a recording. A stroke of no length has no effect.
   void cut(const InputEvent<2>& event) {
     if (!(event.way.cast<double>().norm() > 0)) return;
     cut(ppu::Cut2d::stroke(event.value, event.way),
         event.body == kEveryBody ? std::nullopt : std::optional<std::size_t>(event.body));
   }
-  /// Pieces come some substeps later, or at once in a pause, in which there are none.
+  /// Pieces appear some substeps later. In a pause, which has no substeps, they appear at once.
   void cut(const ppu::Cut2d& where, std::optional<std::size_t> source) {
     cut_bodies(world->soft_bodies, sources, source, controls.paused(), where);
     note_broken();
   }
-  /// After a step or a cut: pieces come behind all other bodies, and hands go on with the piece that has what they hold, if
+  /// Call it after a step or a cut. Pieces are placed after all other bodies, and hands go on with the piece that has what they hold, if
   /// there is one.
   void note_broken() {
     const std::vector<ppu::BrokenSoftBody2d> broken = world->soft_bodies.poll_broken();
@@ -295,7 +295,7 @@ struct Simulation2d::State {
     return body;
   }
   int substeps_of_frame() const { return controls.substeps(scene.substeps); }
-  /// Seconds of one.
+  /// Seconds per substep.
   float substep() const { return kFrameSeconds / static_cast<float>(substeps_of_frame()); }
   void move_hand(const InputEvent<2>& event) { held.move(event.hand, event.value); }
   void release(std::uint32_t hand) { held.release(hand); }
@@ -308,7 +308,7 @@ struct Simulation2d::State {
     held.release_all();
     SC_ASSERT(solver != nullptr, "scene '{}' has no solver", scene.name);
     pins.forget();
-    world.reset();  // its worker before the next one's
+    world.reset();  // destroys its worker before the next one is made
     world.emplace(scene, models, *solver, contacts, spes ? spes->make_contact_worker() : nullptr);
     if (scene.begin) pins.put(world->soft_bodies, scene.begin->pins);
     sources.resize(models.size());
@@ -321,14 +321,14 @@ struct Simulation2d::State {
     make_whole(body);
     bodies[body].reset(scene.soft_bodies[body].position);
   }
-  /// Its pieces go.
+  /// Makes a body whole again: removes its pieces.
   void make_whole(std::size_t body) {
     SC_ASSERT(body < models.size(), "body {} of {} is made whole", body, models.size());
     for (std::size_t b = bodies.size(); b-- > models.size();) {
       if (sources[b] != body) continue;
       let_go(b);
       for (std::size_t after = b + 1; after < bodies.size(); ++after)
-        let_go(after);  // they get other numbers
+        let_go(after);  // because their numbers change
       world->soft_bodies.remove(bodies[b]);
       sources.erase(sources.begin() + static_cast<std::ptrdiff_t>(b));
     }
@@ -345,7 +345,7 @@ struct Simulation2d::State {
     return spes ? world->soft_bodies.time_waited() : std::chrono::nanoseconds{0};
   }
 
-  /// The soft bodies of the world that there is at the moment of asking: a reset replaces it.
+  /// The soft bodies of the present world: a reset replaces the world.
   struct Bodies {
     std::optional<World>& world;
     std::size_t size() const { return world->soft_bodies.size(); }
@@ -353,8 +353,8 @@ struct Simulation2d::State {
   };
 
   const Scene2d& scene;
-  Models models;  // of the scene's soft bodies before they break
-  // Of each soft body: the number of the scene's that it is, or is a piece of. Pieces come behind the scene's.
+  Models models;  // models of the scene's soft bodies before they break
+  // For each soft body the number of the scene's body that it is, or is a piece of. Pieces come after the scene's bodies.
   std::vector<std::size_t> sources;
   ScriptPlayer<2> script;
   Controls<2> controls;
@@ -368,7 +368,7 @@ struct Simulation2d::State {
   HeldBodies<2> held;                 // of `world`
   Pins<2> pins;                       // likewise
   std::vector<InputEvent<2>> events;  // of the last step
-  std::int64_t frame = 0;             // of the script: counts without a break
+  std::int64_t frame = 0;             // of the script; a reset does not restart it
 };
 
 Simulation2d::Simulation2d(const Scene2d& scene, const SimulationOptions& options)
@@ -475,7 +475,7 @@ bool Simulation2d::is_free(const Vector2f& middle, float side) const {
     bool found = false;
     bool ReportFixture(b2Fixture* /*fixture*/) override {
       found = true;
-      return false;  // that is enough
+      return false;  // one is enough
     }
   } anything;
   b2AABB box;
@@ -483,7 +483,7 @@ bool Simulation2d::is_free(const Vector2f& middle, float side) const {
   box.upperBound = to_box2d(middle + Vector2f::Constant(side / 2));
   state_->world->world.QueryAABB(&anything, box);
   if (anything.found) return false;
-  // Box2D does not know bodies that touch with their drawn edges.
+  // Box2D does not know that soft bodies touch with their drawn edges.
   for (std::size_t b = 0; b < soft_bodies(); ++b) {
     const ppu::SoftBody<2>& body = soft_body(b);
     const float reach = side / 2 + body.model().contact_radius();

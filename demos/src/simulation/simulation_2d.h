@@ -37,33 +37,33 @@ class Simulation2d {
   /// The events that the last step() applied: the script's, then those of the caller.
   std::span<const InputEvent<2>> last_events() const;
 
-  /// The scene's soft bodies and, behind them, the pieces of those that have broken.
+  /// The scene's soft bodies and, after them, the pieces of those that have broken.
   std::size_t soft_bodies() const;
   /// The number of the scene's soft body that a body is, or is a piece of.
   std::size_t source(std::size_t body) const;
-  /// How many of them the PPU steps: all with Solver::kReference, else those that fit no local store.
+  /// The number of soft bodies that the PPU steps: all with Solver::kReference, else those that do not fit into a local store.
   std::size_t bodies_on_ppu() const;
   std::size_t particles() const;
   std::size_t rigid_bodies() const;  ///< that can move
-  /// Valid until the next step(), which may reset the world or take a piece away.
+  /// Valid until the next step(), which may reset the world or remove a piece.
   const ppu::SoftBody<2>& soft_body(std::size_t body) const;
   Pose2d rigid_pose(std::size_t body) const;  ///< of Scene2d::rigid_bodies
-  /// What a hand at a point takes: Action::kHoldRigid of a rigid body that moves and is there, else Action::kHold of the
-  /// soft body with the nearest particle. None: there is no soft body.
+  /// What a hand takes at a point: Action::kHoldRigid for a rigid body that moves and is there, else Action::kHold for the soft body with
+  /// the nearest particle. None: there is no soft body.
   std::optional<InputEvent<2>> touch(const Eigen::Vector2f& point) const;
-  /// Whether nothing is in a square, or near it: no rigid body's box and no particle. @param side  metres, above 0
+  /// Whether nothing is in a square or near it: no particle and no box around a rigid body. @param side  metres, above 0
   bool is_free(const Eigen::Vector2f& middle, float side) const;
   bool paused() const;
-  ppu::ContactMethod contacts() const;  ///< what the soft bodies touch with
+  ppu::ContactMethod contacts() const;  ///< how soft bodies collide
   float time_scale() const;
-  int substeps() const;  ///< of a frame of 1/60 s
+  int substeps() const;  ///< per 1/60 s
   std::span<const Hands<2>::Held> held() const;
   const Eigen::Vector2f& gravity() const;  ///< m/s^2
 
   /// Copies what a picture shows, as it is now.
   void show(Shown2d& shown) const;
 
-  /// Everything as it is now, for a scene that begins with it. Hands hold nothing in it, and a pause has ended.
+  /// The present state, for a scene that begins with it. In it hands hold nothing, and a pause has ended.
   /// @throws std::runtime_error  a soft body has broken
   Beginning<2> moment() const;
 

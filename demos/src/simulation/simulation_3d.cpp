@@ -37,7 +37,7 @@ namespace softcell::demos {
 namespace {
 
 constexpr double kTiltGrowsFor = 3;  // seconds
-constexpr float kOpaque = 0.5f;      // opacity of walls that hide what is behind them
+constexpr float kOpaque = 0.5f;      // opacity from which walls hide what is behind them
 constexpr float kReach = 1000;       // metres: beyond any scene
 
 double milliseconds_since(std::chrono::steady_clock::time_point begin) {
@@ -48,7 +48,7 @@ double milliseconds(std::chrono::nanoseconds time) {
   return std::chrono::duration<double, std::milli>(time).count();
 }
 
-/// From the ground's frame to the observer's: first about x, then about z. Radians.
+/// The rotation from the ground's frame to the observer's: first about x, then about z. Radians.
 Eigen::Matrix3f tilted_by(double ax, double az) {
   const auto sx = static_cast<float>(ppu::sine(ax)), cx = static_cast<float>(ppu::cosine(ax));
   const auto sz = static_cast<float>(ppu::sine(az)), cz = static_cast<float>(ppu::cosine(az));
@@ -69,8 +69,8 @@ Eigen::Matrix3f tilt_at(const TiltScript& script, double time) {
   return tilted_by(angle(script.amplitude_x, script.period_x), angle(script.amplitude_z, script.period_z));
 }
 
-/// Has the body's two ends along x turn about x against each other, the middle at rest.
-/// @param rate  rad/s, of one end against the other
+/// Makes the body's two ends along x turn against each other about x, with the middle at rest.
+/// @param rate  rad/s, of one end relative to the other
 void twist(ppu::SoftBody<3>& body, float rate) {
   if (rate == 0) return;
   const ppu::Bounds<3> box = body.bounds();
@@ -84,7 +84,7 @@ void twist(ppu::SoftBody<3>& body, float rate) {
   }
 }
 
-/// Whether bodies are elsewhere after the events though no time has passed.
+/// Whether the events put bodies elsewhere even if no time passes.
 bool puts_elsewhere(std::span<const InputEvent<3>> events) {
   return std::any_of(events.begin(), events.end(), [](const InputEvent<3>& event) {
     return event.action == Action::kHome || event.action == Action::kReset;
@@ -113,7 +113,7 @@ std::vector<std::shared_ptr<const ppu::SoftBodyModel<3>>> models_of(
 }  // namespace
 
 struct Simulation3d::State {
-  /// What a picture needs beside the vertices, of the moment at which these were handed to the SPEs.
+  /// What a picture needs besides the vertices, from the moment at which these were handed to the SPEs.
   struct Snapshot {
     std::vector<Eigen::Matrix4f> box_poses;
     std::vector<std::vector<Eigen::Vector4f>> particles;               // of each soft body
@@ -175,7 +175,7 @@ struct Simulation3d::State {
     take_over();
   }
 
-  /// Whoever steps the bodies has their contacts, too.
+  /// The contacts of the bodies are computed where the bodies are stepped.
   std::shared_ptr<ppu::ContactWorker> make_contact_worker(const SimulationOptions& options) {
     if (on_spes == nullptr || contacts != ppu::ContactMethod::kSurface) return nullptr;
     contact_find = options.kernel("contact_find");
@@ -206,7 +206,7 @@ struct Simulation3d::State {
                                             .is_moved = body.motion.has_value()}));
   }
 
-  /// Calls `place(its number in the world, position, rotation)` for what the scene moves. @param time  seconds
+  /// Calls `place(its number in the world, position, rotation)` for each body that the scene moves. @param time  seconds
   template <class Place>
   void for_each_moved(double time, const Place& place) const {
     for (std::size_t i = 0; i < scene.rigid_bodies.size(); ++i) {
@@ -216,7 +216,7 @@ struct Simulation3d::State {
     }
   }
 
-  /// Of one of `boxes`. kg
+  /// The mass of one of `boxes`, kg.
   float mass_of(std::size_t box) const {
     return box < scene.boxes.size() ? scene.boxes[box].mass
                                     : scene.rigid_bodies[box - scene.boxes.size()].mass;
@@ -236,13 +236,13 @@ struct Simulation3d::State {
                                     : scene.rigid_bodies[box - scene.boxes.size()].opacity;
   }
 
-  /// What a soft body is attached to, if it is a rigid one: one of `boxes`.
+  /// The one of `boxes` to which a soft body is attached, if it is attached to a rigid body.
   std::optional<std::size_t> rigid_of(const AttachmentPlacement<3>& placement) const {
     if (placement.rigid) return scene.boxes.size() + *placement.rigid;
     return placement.box;
   }
 
-  /// As the scene says, also those that have broken.
+  /// Makes all attachments that the scene states, also those that have broken.
   void attach() {
     attachments.clear();
     for (const AttachmentPlacement<3>& placement : scene.attachments) {
@@ -267,12 +267,13 @@ struct Simulation3d::State {
     return stated ? tilted_by(double{stated->x()}, double{stated->z()}) : tilt_at(scene.tilt, frame / 60);
   }
 
-  /// As the scene begins, if that is a moment of a run: behind attach(), which holds what it holds where bodies are at rest.
+  /// Puts everything where the scene begins, if that is a moment of a run. Call it after attach(), which must see the bodies at rest in
+  /// their places.
   void begin() {
     script_frame = scene.begin ? scene.begin->frames : 0;
     begin_again();
   }
-  /// The same at a reset, at which the script goes on.
+  /// The same for a reset, which does not restart the script.
   void begin_again() {
     frame = scene.begin ? 60 * scene.begin->seconds : 0;
     if (!scene.begin) return;
@@ -322,8 +323,8 @@ struct Simulation3d::State {
     return now;
   }
 
-  /// Copies what a picture needs and starts the SPEs: with the next step's dynamics, which go first, and the
-  /// skinning. They work while the frame before is drawn.
+  /// Copies what a picture needs and starts the SPEs: first with the dynamics of the next step, then with the skinning. They work while the
+  /// previous frame is drawn.
   void hand_over() {
     SC_ASSERT(!handed_over, "frame {} is handed over before the one before is taken", frame);
     Snapshot& snapshot = snapshots[static_cast<std::size_t>(1 - newest)];
@@ -356,7 +357,7 @@ struct Simulation3d::State {
     snapshot.origins.resize(positions.size());
   }
 
-  /// After a substep or a cut: pieces come behind all other bodies, and hands let go of what has broken.
+  /// Call it after a substep or a cut. Pieces are placed after all other bodies, and hands let go of what has broken.
   void note_broken() {
     for (const ppu::BrokenSoftBody& broken : soft_bodies.poll_broken()) {
       const std::size_t body = number_of(*broken.body);
@@ -376,7 +377,7 @@ struct Simulation3d::State {
     held.forget(&soft_bodies[body]);
   }
 
-  /// Has what is drawn follow what bodies there are, and of which models. @return whether it did not
+  /// Updates what is drawn to the present bodies and their models. @return whether anything has changed
   bool follow_bodies() {
     const std::size_t before = drawn.size();
     bool changed = before != soft_bodies.size();
@@ -400,14 +401,14 @@ struct Simulation3d::State {
     return changed;
   }
 
-  /// A body is whole again: its pieces go.
+  /// Makes a body whole again: removes its pieces.
   void make_whole(std::size_t body) {
     SC_ASSERT(body < whole.size(), "body {} of {} is made whole", body, whole.size());
     for (std::size_t b = soft_bodies.size(); b-- > whole.size();) {
       if (sources[b] != body) continue;
       let_go(b);
       for (std::size_t after = b + 1; after < soft_bodies.size(); ++after)
-        let_go(after);  // they get other numbers
+        let_go(after);  // because their numbers change
       soft_bodies.remove(soft_bodies[b]);
       sources.erase(sources.begin() + static_cast<std::ptrdiff_t>(b));
       drawn.erase(drawn.begin() + static_cast<std::ptrdiff_t>(b));
@@ -418,7 +419,7 @@ struct Simulation3d::State {
     soft_bodies[body] = ppu::SoftBody<3>(whole[body]);
   }
 
-  /// Pieces come some substeps later, or at once in a pause, in which there are none.
+  /// Pieces appear some substeps later. In a pause, which has no substeps, they appear at once.
   void cut(const ppu::Cut& where, std::optional<std::size_t> source) {
     cut_bodies(soft_bodies, sources, source, controls.paused(), where);
     note_broken();
@@ -432,7 +433,7 @@ struct Simulation3d::State {
     }
   }
 
-  /// A script's hands at particles are not seen: they are how a scene is arranged.
+  /// A script's hands that hold particles are not shown: they only arrange the scene.
   void copy_hands(Snapshot& snapshot) const {
     snapshot.hands.clear();
     for (const Hands<3>::Held& hand : controls.hands().held()) {
@@ -456,7 +457,7 @@ struct Simulation3d::State {
     pins.append(soft_bodies, snapshot.ropes);
   }
 
-  /// Waits for the SPEs; what was handed over is shown from now on.
+  /// Waits for the SPEs. What was handed over is the shown frame from then on.
   void take_over() {
     if (!handed_over) return;
     handed_over = false;
@@ -473,14 +474,14 @@ struct Simulation3d::State {
     if (event.body < boxes.size() && mass_of(event.body) > 0)
       held.hold(event.hand, std::make_unique<RigidGrip>(world.rigid_body(boxes[event.body]), event.value));
   }
-  /// Of a body and of all of its pieces, once.
+  /// Sets the material of a body and of all of its pieces, each once.
   void set_material(const InputEvent<3>& event, std::size_t body) {
     if (event.body != kEveryBody && body >= whole.size()) return;
     for (std::size_t b = 0; b < soft_bodies.size(); ++b)
       if (event.body == kEveryBody ? b == body : sources[b] == body)
         soft_bodies[b].set_material(changed_material(soft_bodies[b], event, substep()));
   }
-  /// What a user or a recording cuts. No effect: a blade without area, and bodies that touch with spheres, which cannot be cut.
+  /// Cuts for a user or a recording. No effect: a blade without area, and bodies whose contacts are spheres, which cannot be cut.
   void cut(const InputEvent<3>& event) {
     const bool has_area = event.edge.cast<double>().cross(event.way.cast<double>()).norm() > 0;
     if (!has_area || contacts == ppu::ContactMethod::kSpheres) return;
@@ -489,7 +490,7 @@ struct Simulation3d::State {
   }
   void move_hand(const InputEvent<3>& event) { held.move(event.hand, event.value); }
   void release(std::uint32_t hand) { held.release(hand); }
-  /// No effect: bodies that touch with spheres, which cannot be attached.
+  /// No effect on bodies whose contacts are spheres: they cannot be attached.
   void pin(std::uint32_t hand) {
     if (contacts == ppu::ContactMethod::kSpheres) return;
     if (const auto part = part_held_by<3>(hand, held, controls.hands(), soft_bodies))
@@ -498,10 +499,10 @@ struct Simulation3d::State {
   void unpin(const InputEvent<3>& event) { pins.remove(soft_bodies, event.body); }
 
   int substeps_of_frame() const { return controls.substeps(scene.substeps); }
-  /// Seconds of one.
+  /// Seconds per substep.
   float substep() const { return kFrameSeconds / static_cast<float>(substeps_of_frame()); }
 
-  /// Hands pull before each substep.
+  /// Steps the world; hands pull before each substep.
   ppu::StepTimes step_world(int substeps) {
     const float step = substep();
     const Eigen::Vector3f gravity = tilt.transpose() * controls.gravity();
@@ -563,23 +564,23 @@ struct Simulation3d::State {
   std::vector<ppu::AttachmentId> attachments;         // of the scene, in order
   std::optional<ppu::SkinOrchestrator> orchestrator;  // likewise
   std::vector<std::shared_ptr<const ppu::SoftBodyModel<3>>>
-      whole;  // of the scene's soft bodies before they break
-  // Of each soft body; the pieces of those that have broken come behind the scene's:
-  std::vector<std::size_t> sources;  // the number of the scene's body that it is, or is a piece of
+      whole;  // models of the scene's soft bodies before they break
+  // One for each soft body; pieces of broken bodies come after the scene's bodies:
+  std::vector<std::size_t> sources;  // number of the scene's body that it is, or is a piece of
   std::vector<std::shared_ptr<const ppu::SoftBodyModel<3>>> drawn;
   std::vector<std::span<const Eigen::Vector4f>> positions;
   std::size_t vertices = 0;
   HeldBodies<3> held;  // of `soft_bodies` and `world`
   Pins<3> pins;        // of `soft_bodies`
   bool records_contacts = false;
-  bool contacts_stand = true;  // false: bodies are elsewhere since the world has found its contacts
+  bool contacts_stand = true;  // false: bodies were put elsewhere after the world found its contacts
 
   std::array<Snapshot, 2> snapshots;
-  int newest = 1;            // the snapshot that is shown: of the vertices that the orchestrator shows
-  bool handed_over = false;  // the other snapshot is the next one
+  int newest = 1;            // the shown snapshot, which belongs to the vertices that the orchestrator shows
+  bool handed_over = false;  // the other snapshot is the next one to be shown
   Eigen::Matrix3f tilt = Eigen::Matrix3f::Identity();
   std::vector<InputEvent<3>> events;      // of the last step
-  std::int64_t script_frame = 0;          // counts frames without a break
+  std::int64_t script_frame = 0;          // a reset does not restart it
   double frame = 0;                       // frames of 1/60 s that were simulated since the last reset
   std::chrono::nanoseconds skin_time{0};  // of the PPU, to hand over the last frame
 };
@@ -606,7 +607,7 @@ FrameTimes Simulation3d::step(std::span<const InputEvent<3>> events) {
       s.hand_over();
       finish();
     }
-    s.copy_contacts(s.snapshots[static_cast<std::size_t>(s.newest)]);  // the world stands as it is shown
+    s.copy_contacts(s.snapshots[static_cast<std::size_t>(s.newest)]);  // the world is as it is shown
     return times;
   }
   s.tilt = s.present_tilt();
@@ -622,7 +623,7 @@ FrameTimes Simulation3d::step(std::span<const InputEvent<3>> events) {
   finish();
   times.skin_wait_ms = milliseconds_since(waiting);
 
-  // Pieces have nothing to show of the frame before: this one is shown at once.
+  // New pieces have no previous frame to show, so this frame is shown at once.
   const bool is_broken = s.follow_bodies();
   s.hand_over();
   if (is_broken) finish();

@@ -25,24 +25,24 @@ enum class Solver {
 /// Who makes mesh vertices from particles, in three dimensions.
 enum class Skin {
   kSpe,  ///< the kernel `skin`, on the SPEs
-  kGpu   ///< whoever draws, from the particles
+  kGpu   ///< the renderer, from the particles
 };
 
-/// By how much more time an interpreted job may take.
+/// The factor on the time limit of an interpreted job.
 inline constexpr int kInterpretedDeadline = 30;
 
-/// How a scene is simulated. The result depends on the contacts and, by rounding, on the solver.
+/// How a scene is simulated. The result depends on the contact method and, by rounding, on the solver.
 struct SimulationOptions {
   Solver solver = Solver::kSpe;
-  /// What the SPEs execute: kernels built for the host, or, interpreted, those built for the SPU. The same bits.
+  /// What the SPEs execute: kernels built for the host or, interpreted, kernels built for the SPU. Both give the same bits.
   ls_sim::Machine machine = ls_sim::Machine::kHost;
   Skin skin = Skin::kSpe;
   std::optional<ppu::ContactMethod> contacts = {};  ///< none: the scene's
   int spes = dma::kSpeCount;
   dma::Schedule schedule{};
   ls_sim::Findings* findings = nullptr;  ///< where checked kernels report; null: kernels are not checked
-  ls_sim::Trace* trace = nullptr;        ///< of at least as many SPEs; null: nothing is recorded
-  /// Of at least as many SPEs: counts what their work takes on a PS3, for kernels built for the SPU. The SPEs then take turns. Null:
+  ls_sim::Trace* trace = nullptr;        ///< for at least as many SPEs; null: nothing is recorded
+  /// Counts what the work would take on a PS3, for at least as many SPEs and for kernels built for the SPU. The SPEs then take turns. Null:
   /// nothing is timed.
   ls_sim::Timing* timing = nullptr;
 
@@ -61,23 +61,23 @@ struct SimulationOptions {
 /// Milliseconds of one frame, measured on the PPU thread.
 struct FrameTimes {
   double physics_ms = 0;      ///< in Bullet or Box2D
-  double ppu_ms = 0;          ///< in softcell, in processor time of the thread: the sum of the next five
-  double gather_ms = 0;       ///< taking particles over from the engine
-  double solve_ms = 0;        ///< handing the solver's work over and taking it back, or doing it
-  double apply_ms = 0;        ///< giving the engine the new velocities
-  double contacts_ms = 0;     ///< of surfaces; spheres touch in Bullet
-  double skin_ms = 0;         ///< handing over the skinning
-  double solver_wait_ms = 0;  ///< by the clock, until the solver had finished; in none of the above
-  /// Waiting for the SPEs, so that pictures are the same on every host; in none of the above.
+  double ppu_ms = 0;          ///< in softcell, processor time of the thread: the sum of the next five
+  double gather_ms = 0;       ///< copying particles from the engine
+  double solve_ms = 0;        ///< handing work to the solver and taking it back, or doing it
+  double apply_ms = 0;        ///< copying the new velocities to the engine
+  double contacts_ms = 0;     ///< of surfaces; contacts of spheres are Bullet's
+  double skin_ms = 0;         ///< handing over the skinning jobs
+  double solver_wait_ms = 0;  ///< wall-clock time until the solver has finished; not included above
+  /// Waiting for the SPEs, so that pictures are the same on every host; not included above.
   double skin_wait_ms = 0;
-  /// By the clocks of the SPEs, on a PS3: from the frame's first job to its last, without the PPU's time. 0: nothing is timed.
+  /// On a PS3, by the clocks of the SPEs: from the frame's first job to its last, without the PPU's time. 0: nothing is timed.
   double ps3_ms = 0;
 };
 
 /// Measures FrameTimes::ps3_ms.
 class FrameOnPs3 {
  public:
-  /// @param timing  null: 0 ms
+  /// @param timing  null: the time is 0 ms
   explicit FrameOnPs3(const ls_sim::Timing* timing) : timing_(timing), begin_(now()) {}
   double milliseconds() const {
     return static_cast<double>(now() - begin_) * 1e3 / static_cast<double>(ls_sim::kCyclesPerSecond);

@@ -1,5 +1,5 @@
 #pragma once
-// How a hand holds a soft body in two dimensions: as in three (surface_grip.h), by a patch that gives.
+// A hand's hold on a soft body in two dimensions: as in three dimensions (surface_grip.h), by a patch that gives.
 
 #include <Eigen/Core>
 #include <cstdint>
@@ -13,12 +13,13 @@
 
 namespace softcell::demos {
 
-/// A particle that a hand holds, and the patch of the body around it (patch_grip.h).
+/// Holds a particle, and the patch of the body around it (patch_grip.h).
 ///
-/// One thread uses it. Allocates in the constructor, and when the body yields. Deterministic: double precision, sums in the order of particles.
+/// One thread uses it. Allocates in the constructor, and when the body yields. Deterministic: it computes in double precision and sums in
+/// the order of particles.
 class SoftGrip2d final : public Grip<2> {
  public:
-  /// @param body  outlives this  @pre it has the particle
+  /// @param body  must outlive this object  @pre it has the particle
   SoftGrip2d(ppu::SoftBody<2>& body, std::uint32_t particle);
 
   Eigen::Vector2f point() const override { return body_.position(particle_); }

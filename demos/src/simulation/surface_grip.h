@@ -1,5 +1,5 @@
 #pragma once
-// How a hand holds a soft body: by a patch of its surface, which gives, and never so hard that the body tears.
+// A hand's hold on a soft body: by a patch of its surface, which gives, and never so hard that the body tears.
 
 #include <Eigen/Core>
 #include <array>
@@ -12,13 +12,14 @@
 
 namespace softcell::demos {
 
-/// A point of one body's surface that a hand holds, and the patch of the body around it (patch_grip.h).
+/// Holds a point of a body's surface, and the patch of the body around it (patch_grip.h).
 ///
-/// One thread uses it. Allocates in the constructor, and when the body yields. Deterministic: double precision, sums in the order of particles.
+/// One thread uses it. Allocates in the constructor, and when the body yields. Deterministic: it computes in double precision and sums in
+/// the order of particles.
 class SurfaceGrip final : public Grip<3> {
  public:
-  /// @param body   outlives this
-  /// @param point  metres, of the body's surface as it is now. Outside of the body, its nearest particle is held.
+  /// @param body   must outlive this object
+  /// @param point  metres, on the body's surface as it is now. If it is outside of the body, the nearest particle is held.
   SurfaceGrip(ppu::SoftBody<3>& body, const Eigen::Vector3f& point);
 
   const ppu::SoftBody<3>& body() const { return body_; }
@@ -31,11 +32,11 @@ class SurfaceGrip final : public Grip<3> {
   float patch_radius() const { return grip_.patch().radius; }  ///< metres, along the body
 
  private:
-  /// Of a point in a cell.
+  /// The place of a point in a cell.
   struct Place {
     std::array<std::uint32_t, 8> corners{};  ///< of the cell
-    std::array<float, 8> shares{};           ///< their sum 1
-    std::uint32_t nearest() const;           ///< the corner that has the largest share
+    std::array<float, 8> shares{};           ///< weights of the corners; their sum is 1
+    std::uint32_t nearest() const;           ///< the corner with the largest share
   };
   static Place place_of(const ppu::SoftBody<3>& body, const Eigen::Vector3f& point);
 

@@ -14,7 +14,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-/// Mass, centre and velocity.
+/// Sets mass, centre and velocity.
 template <int Dimension>
 void add_particles(const ppu::SoftBody<Dimension>& body, WholeBody<Dimension>& whole) {
   const auto masses = body.model().masses();
@@ -44,7 +44,7 @@ WholeBody<3>::WholeBody(const ppu::SoftBody<3>& body, const HeldRest<3>& rest) {
     second += m * r * r.transpose();
     correlation += m * r * rest.positions[i].cast<double>().transpose();
   }
-  // A body that is flat or on a line turns about all axes all the same.
+  // This lets a body that is flat or lies on a line turn about all axes as well.
   constexpr double kThickness = 1e-3;
   const Matrix3d inertia = second.trace() * (1 + kThickness) * Matrix3d::Identity() - second;
   inverse_inertia = inertia.inverse();
@@ -72,8 +72,8 @@ WholeBody<2>::WholeBody(const ppu::SoftBody<2>& body, const HeldRest<2>& rest) {
     angular_momentum += m * across(r).dot(v[i].cast<double>());
     correlation += m * Vector2d(at_rest.dot(r), across(at_rest).dot(r));
   }
-  // A body of no extent turns all the same.
-  constexpr double kLeast = 1e-3;  // of the inertia that all mass would have a cell away
+  // This lets a body without extent turn as well.
+  constexpr double kLeast = 1e-3;  // of the inertia that the whole mass would have at a distance of one cell
   const double spacing = double{body.model().lattice().spacing};
   inertia = std::max(inertia, kLeast * mass * spacing * spacing);
 }

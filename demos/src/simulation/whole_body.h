@@ -1,6 +1,6 @@
 #pragma once
-// A soft body that a hand holds, as one rigid thing: how it moves, and what an impulse does to it. In double precision, sums in the order of
-// particles.
+// Treats a soft body that a hand holds as one rigid body: how it moves, and what an impulse does to it. It computes in double precision and
+// sums in the order of particles.
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -10,7 +10,7 @@
 
 namespace softcell::demos {
 
-/// Dimension: 2 or 3. SI units; a turn is in rad/s, in two dimensions counter-clockwise.
+/// Dimension: 2 or 3. SI units; a turn is an angular velocity in rad/s, in two dimensions counter-clockwise.
 template <int Dimension>
 struct WholeBody;
 
@@ -23,16 +23,16 @@ struct WholeBody<3> {
 
   WholeBody(const ppu::SoftBody<3>& body, const HeldRest<3>& rest);
 
-  /// Velocity that a turn gives to what is at `r` from the centre.
+  /// The velocity that a turn gives to a point at `r` from the centre.
   static Vector velocity_of(const Turn& turn, const Vector& r) { return turn.cross(r); }
   Turn mean_turn() const { return inverse_inertia * angular_momentum; }
-  /// What `share` of an impulse (N s) at `r` from the centre does.
+  /// The turn that `share` of an impulse (N s) at `r` from the centre causes.
   Turn turn_by(double share, const Vector& r, const Vector& impulse) const {
     return share * (inverse_inertia * r.cross(impulse));
   }
-  /// The velocity at `r` after an impulse of 1 N s there, by its direction.
+  /// Maps an impulse of 1 N s at `r`, by its direction, to the change of velocity there.
   Eigen::Matrix3d response_at(const Vector& r) const;
-  /// What is so far from the centre at rest, turned as the body is. @param orientation  that of the last call: where the search begins
+  /// The vector from the centre at rest, rotated as the body is. @param orientation  the result of the last call, where the search begins
   Vector turned(const Vector& from_centre_at_rest, Orientation& orientation) const;
 
   double mass = 0;
@@ -45,7 +45,7 @@ template <>
 struct WholeBody<2> {
   using Vector = Eigen::Vector2d;
   using Turn = double;
-  struct Orientation {};  // it is found without a beginning
+  struct Orientation {};  // needs no start value
   static Orientation upright() { return {}; }
 
   WholeBody(const ppu::SoftBody<2>& body, const HeldRest<2>& rest);
@@ -62,7 +62,7 @@ struct WholeBody<2> {
 
   double mass = 0, inertia = 0, angular_momentum = 0;
   Vector centre{0, 0}, velocity{0, 0};
-  /// Sums of m x0 . r and of m x0 x r: cosine and sine of the body's turn, times a length.
+  /// Sums of m x0 . r and of m x0 x r: cosine and sine of the body's rotation, times a common factor.
   Vector correlation{0, 0};
 
  private:

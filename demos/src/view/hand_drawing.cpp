@@ -13,7 +13,7 @@ using Eigen::Matrix3f;
 using Eigen::Vector3f;
 
 constexpr float kGloveHeight = 0.16f;  // of the picture's height
-constexpr float kThreadEnd = 0.006f;   // radius, likewise
+constexpr float kThreadEnd = 0.006f;   // radius, also of the picture's height
 constexpr std::array<std::array<std::uint32_t, 2>, 1> kThread{{{0, 1}}};
 
 /// A ball of radius 1, stretched and turned by `shape`.
@@ -36,7 +36,7 @@ void add_finger(ppu::TriangleMesh& mesh, const Vector3f& knuckle, const Vector3f
   add_ellipsoid(mesh, 0.5f * (knuckle + tip), shape);
 }
 
-/// 1 high, its fingertips together at the origin, the wrist above them.
+/// A glove of height 1 with its fingertips together at the origin and the wrist above them.
 ppu::TriangleMesh make_glove() {
   ppu::TriangleMesh glove;
   const auto add_ball = [&](const Vector3f& centre, const Vector3f& radii) {

@@ -1,5 +1,5 @@
 #pragma once
-// The hands that hold bodies in three dimensions: a glove, and a thread from its fingertips to the point that it holds.
+// Draws the hands that hold bodies in three dimensions: a glove, and a thread from its fingertips to the held point.
 
 #include <Eigen/Core>
 #include <array>
@@ -14,12 +14,12 @@ namespace softcell::demos {
 /// One thread uses it.
 class HandDrawing {
  public:
-  using Hand = std::array<Eigen::Vector3f, 2>;  ///< the point that is held, and the hand, metres
+  using Hand = std::array<Eigen::Vector3f, 2>;  ///< the held point, and the hand, metres
 
-  /// Nothing is added to the renderer before the first hand is drawn.
+  /// Adds nothing to the renderer before the first hand is drawn.
   explicit HandDrawing(render::Renderer& renderer) : renderer_(renderer) {}
 
-  /// Appends what shows the hands. Gloves are as large on every picture, whatever the scene's size.
+  /// Appends the draws that show the hands. Gloves have the same size in every picture, whatever the scene's size.
   /// @param lattices  refer to this object's memory until the next call
   void append(std::span<const Hand> hands, const render::Camera& camera,
               std::vector<render::StaticDraw>& statics, std::vector<render::LatticeDraw>& lattices);

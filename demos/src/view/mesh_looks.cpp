@@ -8,7 +8,7 @@
 namespace softcell::demos {
 namespace {
 
-/// As render::srgb().
+/// Like render::srgb().
 float linear_of(float encoded) {
   return encoded * (encoded * (encoded * 0.305306011f + 0.682171111f) + 0.012522878f);
 }

@@ -1,5 +1,5 @@
 #pragma once
-// Brings what a mesh's maker painted to the renderer: textures, vertex colours, and parts with their materials.
+// Gives the renderer what the author of a mesh painted: textures, vertex colours, and parts with their materials.
 
 #include <cstdint>
 #include <map>
@@ -15,19 +15,19 @@ namespace softcell::demos {
 
 class MeshLooks {
  public:
-  /// @param renderer  outlives this, as do the meshes' pictures, each of which is uploaded once.
+  /// @param renderer  must outlive this object, as must the meshes' pictures; each picture is uploaded once.
   explicit MeshLooks(render::Renderer& renderer) : renderer_(renderer) {}
 
-  /// Whether there is more to draw of a mesh than its shape.
+  /// Whether a mesh has more to draw than its shape.
   static bool has_looks(const ppu::TriangleMesh& mesh);
 
   /// Uploads the attributes of a mesh's vertices and the pictures of its materials.
-  /// @param vertices  for each vertex of `to` the number of the mesh's vertex that it is
-  /// @param otherwise  the colour of parts whose materials have none
+  /// @param vertices  for each vertex of `to` the number of the mesh's vertex
+  /// @param otherwise  the colour of parts whose materials state none
   /// @return the parts to draw, over the mesh's triangles
   std::vector<render::PartDraw> upload(const ppu::TriangleMesh& mesh, std::span<const std::uint32_t> vertices,
                                        const render::Colour& otherwise, render::MeshId to);
-  /// The same for a mesh whose vertices are in their order.
+  /// The same for a mesh whose vertices are in the mesh's own order.
   std::vector<render::PartDraw> upload(const ppu::TriangleMesh& mesh, const render::Colour& otherwise,
                                        render::StaticMeshId to);
 

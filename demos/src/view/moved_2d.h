@@ -1,5 +1,5 @@
 #pragma once
-// Which part of a scene in two dimensions has moved since the last picture: only that part is drawn again.
+// Finds the part of a scene in two dimensions that has moved since the last picture: only that part is redrawn.
 
 #include <Eigen/Geometry>
 #include <vector>
@@ -14,12 +14,11 @@ class Moved2d {
  public:
   using Box = Eigen::AlignedBox2f;
 
-  /// @param scene  whose moments since_last() is given
+  /// @param scene  the scene whose moments are passed to since_last()
   explicit Moved2d(const Scene2d& scene);
 
-  /// A box around everything that has moved since the last call, at its old and at its new place; empty if nothing
-  /// has. Soft bodies and hands always count as moving. Before the first call, everything is at the world's
-  /// origin.
+  /// A box around everything that has moved since the last call, at its old and at its new place; empty if nothing has. Soft bodies and
+  /// hands always count as moving. The first call compares with all bodies at the world's origin.
   /// @param soft_bodies  a box around all soft bodies as they are drawn now; empty: there are none
   Box since_last(const Shown2d& now, const Box& soft_bodies);
 

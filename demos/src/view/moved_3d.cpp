@@ -13,7 +13,7 @@ namespace {
 using Eigen::Vector3f;
 using Box = Moved3d::Box;
 
-constexpr int kEdge = 3;  // pixels around a box, for what is smoothed and rounded
+constexpr int kEdge = 3;  // pixels around a box, for smoothing and rounding
 
 bool is_same(const render::Camera& a, const render::Camera& b) {
   return a.eye == b.eye && a.target == b.target && a.up == b.up && a.tan_half_fov_y == b.tan_half_fov_y &&
@@ -42,7 +42,7 @@ Box around(const render::LatticeDraw& lattice) {
   return {box.min() - reach, box.max() + reach};
 }
 
-/// The part of the picture that boxes and their shadows are in.
+/// Collects the part of the picture that is covered by boxes and their shadows.
 class Covered {
  public:
   /// @param lowest  height of the lowest thing that a shadow can fall on, metres
@@ -59,7 +59,7 @@ class Covered {
     if (box.isEmpty()) return;
     for (int k = 0; k < 8; ++k) {
       const Vector3f corner = box.corner(static_cast<Box::CornerType>(k));
-      // A shadow ends below everything, and with the sphere that the light shines on.
+      // A shadow ends below everything, or at the end of the sphere that the light shines on.
       const float fall = std::max(corner.y() - lowest_, 0.0f), slope = toward_light_.y();
       const float shadow = fall < longest_shadow_ * slope ? fall / slope : longest_shadow_;
       add(corner);
@@ -70,7 +70,7 @@ class Covered {
   std::optional<render::PixelRect> rectangle() const {
     if (everything_) return std::nullopt;
     if (pixels_.isEmpty()) return render::PixelRect{};
-    const auto at = [](float value, int side) {  // what is far outside must not leave the range of numbers
+    const auto at = [](float value, int side) {  // keeps what is far outside within the range of int
       return static_cast<int>(std::floor(std::clamp(value, -1.0f, static_cast<float>(side) + 1)));
     };
     return render::PixelRect{.left = at(pixels_.min().x(), width_) - kEdge,
@@ -82,7 +82,7 @@ class Covered {
  private:
   void add(const Vector3f& point) {
     const Eigen::Vector4f clip = to_clip_ * point.homogeneous();
-    if (!(clip.w() > 1e-3f)) {  // behind the eye: seen from within its box, or not a number
+    if (!(clip.w() > 1e-3f)) {  // behind the eye, as seen from within its box, or NaN
       everything_ = true;
       return;
     }

@@ -1,5 +1,5 @@
 #pragma once
-// Where a picture of a scene in three dimensions can differ from the last one: only that part is drawn again.
+// Finds the part of a picture of a scene in three dimensions that can differ from the last picture: only that part is redrawn.
 
 #include <Eigen/Geometry>
 #include <optional>
@@ -15,19 +15,19 @@ class Moved3d {
  public:
   using Box = Eigen::AlignedBox3f;
 
-  /// What the frame shows apart from its skinned meshes and lattices.
+  /// The sizes of what the frame shows.
   struct Extents {
     std::span<const Box> soft_bodies;           ///< around each skinned mesh as it is drawn now, metres
     std::span<const Box> static_meshes;         ///< around each static mesh in its own frame
     int picture_width = 0, picture_height = 0;  ///< pixels, above 0
   };
 
-  /// The part of the picture in which something has moved since the last call, or its shadow; empty if nothing has.
-  /// None if everything may differ: at first, and when the camera, the light or the number of things is another one.
-  /// Soft bodies and lattices always count as moving.
+  /// The part of the picture in which something, or its shadow, has moved since the last call; empty if nothing has. None if everything may
+  /// differ: in the first call, and when the camera, the light or the number of things has changed. Soft bodies and lattices always count
+  /// as moving.
   std::optional<render::PixelRect> since_last(const render::FrameDescription& frame, const Extents& extents);
 
-  /// The next call has nothing to compare with.
+  /// Makes the next call compare with nothing.
   void forget() { known_ = false; }
 
  private:

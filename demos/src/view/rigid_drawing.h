@@ -1,5 +1,5 @@
 #pragma once
-// The shapes of rigid bodies as the renderer draws them.
+// Turns the shapes of rigid bodies into meshes and draws for the renderer.
 
 #include <Eigen/Core>
 #include <functional>
@@ -12,16 +12,16 @@
 
 namespace softcell::demos {
 
-/// A part of a rigid body among what is drawn.
+/// A part of a rigid body in the list of draws.
 struct DrawnPart {
   std::size_t body = 0, draw = 0;                       ///< their numbers
   Eigen::Matrix4f place = Eigen::Matrix4f::Identity();  ///< from the part's frame to the body's
 };
 
-/// Gives a mesh to the renderer.
+/// Adds a mesh to the renderer.
 using AddStatic = std::function<render::StaticMeshId(const ppu::TriangleMesh& mesh)>;
 
-/// Appends the parts of all bodies to what is drawn.
+/// Appends the parts of all bodies to the draws.
 std::vector<DrawnPart> add_parts(std::span<const RigidBody> bodies, const AddStatic& add_static,
                                  std::vector<render::StaticDraw>& statics);
 

@@ -15,7 +15,7 @@ using Eigen::Vector2f;
 
 constexpr int kCirclePoints = 64;
 constexpr int kCornerPoints = 6;
-constexpr float kEdgeSlope = 0.5f;  // as of a soft body's edge, and a little flatter
+constexpr float kEdgeSlope = 0.5f;  // like a soft body's edge, but a little flatter
 
 struct CornersOf {
   std::vector<Vector2f> operator()(const Box2dShape& box) const {
@@ -30,14 +30,14 @@ Vector2f direction(double angle) {
   return {static_cast<float>(ppu::cosine(angle)), static_cast<float>(ppu::sine(angle))};
 }
 
-/// The outline with its normals; corners are arcs within the polygon.
+/// Makes the outline with its normals; corners become arcs inside the polygon.
 void round_corners(const std::vector<Vector2f>& corners, float rounding, std::vector<Vector2f>& outline,
                    std::vector<Vector2f>& normals) {
   const std::size_t n = corners.size();
   for (std::size_t i = 0; i < n; ++i) {
     const Vector2f before = corners[(i + n - 1) % n] - corners[i], behind = corners[(i + 1) % n] - corners[i];
     const Vector2f a = before.normalized(), b = behind.normalized();
-    // Half the angle between the sides: how far along them an arc of a radius begins.
+    // Half the angle between the sides determines where on the sides an arc of this radius begins.
     const float cosine = a.dot(b), tangent = std::sqrt((1 - cosine) / std::max(1 + cosine, 1e-6f));
     const float along = std::min(rounding / tangent, 0.4f * std::min(before.norm(), behind.norm()));
     const float radius = along * tangent;
@@ -74,7 +74,7 @@ RigidShape2d rigid_shape_2d(const RigidBody2d& body, float rounding, float bevel
     }
     round_corners(corners, std::min(rounding, 0.4f * inradius), shape.outline, normals);
   }
-  // Two rings: the outline, and where the surface gets level. Each point of the inner one lies towards the middle.
+  // Two rings: the outline, and the line where the surface becomes level. Each inner point is an outline point moved towards the middle.
   const float width = std::min(bevel, 0.8f * inradius);
   const auto n = static_cast<std::uint32_t>(shape.outline.size());
   for (std::uint32_t i = 0; i < n; ++i)

@@ -1,5 +1,5 @@
 #pragma once
-// How a rigid body in two dimensions is drawn: its outline, and triangles whose surface falls off to the edge.
+// How a rigid body in two dimensions is drawn: its outline, and triangles whose surface slopes down towards the edge.
 
 #include <Eigen/Core>
 #include <array>
@@ -17,8 +17,8 @@ struct RigidShape2d {
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
-/// @param rounding  radius of corners, metres; what is smaller has smaller ones
-/// @param bevel  width of the part that falls off to the edge, metres, likewise; 0: the shape is flat
+/// @param rounding  radius of corners, metres; smaller shapes have smaller ones
+/// @param bevel  width of the sloping part at the edge, metres, likewise; 0: the shape is flat
 RigidShape2d rigid_shape_2d(const RigidBody2d& body, float rounding, float bevel);
 
 }  // namespace softcell::demos

@@ -13,7 +13,7 @@ namespace {
 using Eigen::Vector3f;
 
 constexpr int kRopeSegments = 16;       // of a slack rope
-constexpr float kLeastSlack = 1.0005f;  // times the distance of its ends
+constexpr float kLeastSlack = 1.0005f;  // times the distance between its ends
 constexpr float kKnot = 1.6f;           // times the rope's radius
 
 }  // namespace
@@ -21,7 +21,7 @@ constexpr float kKnot = 1.6f;           // times the rope's radius
 /// A flat arc of sag s over a chord d is d + 8 s^2 / (3 d) long.
 float rope_sag(float distance, float length) {
   if (!(length > kLeastSlack * distance)) return 0;
-  const float chord = std::max(distance, 0.2f * length);  // where the arc is not flat, it is not too deep
+  const float chord = std::max(distance, 0.2f * length);  // an arc that is not flat would hang too low
   return std::sqrt(0.375f * chord * (length - chord));
 }
 
@@ -29,7 +29,7 @@ Eigen::AlignedBox3f around_rope(const ShownRope<3>& rope, const Vector3f& down) 
   Eigen::AlignedBox3f box;
   box.extend(rope.ends[0]).extend(rope.ends[1]);
   const Vector3f middle = 0.5f * (rope.ends[0] + rope.ends[1]);
-  // The arc lies below its chord and above its tangents in the ends, which meet twice the sag below the middle.
+  // The arc lies below its chord and above the tangents at its ends, which meet twice the sag below the middle.
   box.extend(Vector3f(middle + 2 * rope_sag((rope.ends[1] - rope.ends[0]).norm(), rope.length) * down));
   const Vector3f reach = Vector3f::Constant(0.5f * kKnot * rope.thickness);
   return {box.min() - reach, box.max() + reach};
@@ -67,7 +67,7 @@ void RopeDrawing::append(std::span<const ShownRope<3>> ropes, const Vector3f& do
       draw.pose.topRightCorner<3, 1>() = a + 0.5f * along;
       statics.push_back(draw);
     }
-    draw.mesh = ball_;  // joints, and the knots at both ends
+    draw.mesh = ball_;  // for joints, and for the knots at both ends
     for (int i = 0; i <= segments; ++i) {
       const float size = i == 0 || i == segments ? kKnot * radius : radius;
       draw.pose.topLeftCorner<3, 3>() = size * Eigen::Matrix3f::Identity();

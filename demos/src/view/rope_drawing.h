@@ -1,5 +1,5 @@
 #pragma once
-// Ropes as chains of thin cylinders: straight when they are taut, a parabola when they are slack.
+// Draws ropes as chains of thin cylinders: straight when they are taut, a parabola when they are slack.
 
 #include <Eigen/Geometry>
 #include <span>
@@ -10,20 +10,20 @@
 
 namespace softcell::demos {
 
-/// How far below the line between its ends the middle of a rope hangs, metres: 0 of one that is taut.
+/// How far the middle of a rope hangs below the line between its ends, metres; 0 if the rope is taut.
 float rope_sag(float distance, float length);
 
 /// A box around a rope as it is drawn.
-/// @param down  where slack ropes sag, of unit length
+/// @param down  the direction in which slack ropes sag, of unit length
 Eigen::AlignedBox3f around_rope(const ShownRope<3>& rope, const Eigen::Vector3f& down);
 
 /// One thread uses it.
 class RopeDrawing {
  public:
-  /// Nothing is added to the renderer before the first rope is drawn.
+  /// Adds nothing to the renderer before the first rope is drawn.
   explicit RopeDrawing(render::Renderer& renderer) : renderer_(renderer) {}
 
-  /// @param down  where slack ropes sag, of unit length
+  /// @param down  the direction in which slack ropes sag, of unit length
   void append(std::span<const ShownRope<3>> ropes, const Eigen::Vector3f& down,
               std::vector<render::StaticDraw>& statics);
 

@@ -17,7 +17,7 @@ void Lines::add(const Eigen::Vector3f& from, const Eigen::Vector3f& to) {
 }
 
 void RotationAxes::update(const std::vector<Shown3d::Body>& bodies) {
-  constexpr float kLengthInCells = 0.45f;  // neighbours' axes do not meet
+  constexpr float kLengthInCells = 0.45f;  // so that the axes of neighbours do not meet
   SC_ASSERT(bodies.size() >= plans_.size(), "{} bodies with the plans of {}", bodies.size(), plans_.size());
   for (Lines& lines : axes_) lines.clear();
   while (matchers_.size() < plans_.size()) matchers_.emplace_back(plans_[matchers_.size()]);

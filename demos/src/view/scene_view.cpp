@@ -10,7 +10,7 @@
 namespace softcell::demos {
 namespace {
 
-constexpr float kVeil = 0.3f;     // opacity of what marks must be seen through
+constexpr float kVeil = 0.3f;     // opacity of bodies through which marks must be seen
 constexpr float kGlass = 0.15f;   // opacity of a wall that hides the scene
 constexpr float kBoxFaces = 100;  // metres: larger than any box, so that each face is one square
 
@@ -25,7 +25,7 @@ std::vector<std::array<std::uint32_t, 2>> links_of(const ppu::Lattice<3>& lattic
   return links;
 }
 
-/// How the vertices that the kernel `skin` would write hang in the lattice: for the GPU to make them.
+/// How the vertices that the kernel `skin` would write are embedded in the lattice, for the GPU to compute them.
 std::vector<render::CellVertex> cell_vertices(const ppu::Embedding& embedding) {
   std::vector<render::CellVertex> vertices;
   vertices.reserve(4 * embedding.groups.size());
@@ -45,7 +45,7 @@ std::vector<render::CellVertex> cell_vertices(const ppu::Embedding& embedding) {
   return vertices;
 }
 
-/// Of a wall that the eye looks through from outside, so that it does not hide what is behind it.
+/// The opacity of a wall: low if the eye looks through it from outside, so that it does not hide what is behind it.
 float wall_opacity(const RigidBox& wall, const Eigen::Matrix4f& pose, const Eigen::Vector3f& eye) {
   // Outside is away from the middle of the framework, across the wall's thickness.
   const int across = wall.size.x() < wall.size.z() ? 0 : 2;
@@ -94,7 +94,7 @@ SceneView::SceneView(const Scene& scene, const Simulation3d& simulation, render:
   rigid_parts_ = add_parts(scene_.rigid_bodies, add_static, statics_);
 }
 
-/// Meshes of bodies that are new, or that have broken since they were drawn last.
+/// Makes the meshes of bodies that are new, or that have broken since they were last drawn.
 void SceneView::follow_bodies(const Shown3d& shown) {
   const std::size_t before = lattice_buffers_.size(), count = shown.bodies.size();
   bool changed = before != count;

@@ -31,11 +31,10 @@ class SceneView {
 
   /// Draws the newest frame that the SPEs have finished.
   const render::Image& draw();
-  /// The same with the camera turned about what it looks at. @param turn  radians, counter-clockwise from above
+  /// The same with the camera turned about the point it looks at. @param turn  radians, counter-clockwise from above
   const render::Image& draw(float turn);
 
-  /// Draws what was copied from the simulation, which may go on meanwhile. The camera is kept outside of bodies. The picture is in
-  /// the renderer.
+  /// Draws a copy of the simulation, which may go on meanwhile. The camera is kept outside of bodies. The picture is in the renderer.
   void draw(const Shown3d& shown, const Look& look);
 
  private:
@@ -61,9 +60,9 @@ class SceneView {
 
   MeshLooks looks_;
   std::vector<std::vector<render::PartDraw>>
-      parts_;  // of what is drawn with materials of its own and does not change; stays as it is
+      parts_;  // of static draws with materials of their own; never changes
   std::vector<render::SkinnedDraw> skinned_;
-  std::vector<std::vector<render::PartDraw>> skinned_parts_;  // of these
+  std::vector<std::vector<render::PartDraw>> skinned_parts_;  // likewise, of skinned_
   std::vector<render::StaticDraw> statics_;                   // boxes, obstacles, parts of rigid bodies
   std::vector<DrawnPart> rigid_parts_;
   Moved3d moved_;
@@ -82,9 +81,9 @@ class SceneView {
   RotationAxes rotations_;
   std::vector<Eigen::Vector3f> points_;  // contacts
   Lines normals_;                        // at contacts
-  std::vector<Eigen::Vector3f> marked_;  // one of them, or none
+  std::vector<Eigen::Vector3f> marked_;  // at most one of them
   std::vector<render::LatticeDraw> marks_, marks_with_hands_;
-  render::FrameDescription frame_;  // the one in making
+  render::FrameDescription frame_;  // the frame that is being made
 };
 
 }  // namespace softcell::demos

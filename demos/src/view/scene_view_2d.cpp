@@ -14,22 +14,22 @@ namespace {
 
 using Eigen::Vector2f;
 
-// Shares of the height of what the picture shows.
+// Fractions of the visible height.
 constexpr float kLine = 0.0034f;
 constexpr float kRounding = 0.009f, kBevel = 0.022f;  // of rigid bodies
 constexpr float kHandRadius = 0.011f;
-constexpr float kMarkRadius = 0.13f, kMarkDistance = 0.62f;  // shares of a circle's radius
+constexpr float kMarkRadius = 0.13f, kMarkDistance = 0.62f;  // fractions of a circle's radius
 
-constexpr float kLeastLine = 1.6f;  // pixels: thinner ones would not hide the steps in a shape's edge
+constexpr float kLeastLine = 1.6f;  // pixels: thinner lines would not hide the steps in a shape's edge
 constexpr float kPale = 0.28f;      // opacity of bodies under their particles
 
-// How far around a thing the picture depends on it, in pixels beside its shadow: the shadow is blurred in squares of
-// four pixels and drawn between their middles, and lines have soft edges.
+// How far from a thing the picture depends on it, in pixels, besides its shadow: the shadow is blurred in squares of four pixels and drawn
+// between their centres, and lines have soft edges.
 constexpr float kReach = 16;
 
 render::Colour darker(const render::Colour& colour) { return 0.45f * colour; }
 
-/// Of the paper: small enough to show sizes, and a whole number of metres or a binary fraction of one.
+/// The side of the paper's squares: small enough to show sizes, and a whole number of metres or a binary fraction of one.
 float squares_for(float height) {
   constexpr float kFewest = 20;  // in the picture's height
   float side = 0.25f;
@@ -68,7 +68,7 @@ void SceneView2d::add_rigid_body(const RigidBody2d& body) {
     added.mark_radius = circle->radius;
 }
 
-/// Shapes of bodies that are new, or that have broken since they were drawn last.
+/// Makes the shapes of bodies that are new, or that have broken since they were last drawn.
 void SceneView2d::follow_bodies(const Shown2d& shown) {
   const std::size_t count = shown.models.size();
   for (std::size_t b = count; b < soft_bodies_.size(); ++b) soft_bodies_[b]->shape.remove_from(renderer_);
@@ -121,7 +121,7 @@ void SceneView2d::draw_rigid_body(std::size_t index, const Pose2d& pose) {
                              .vertices = body.vertices,
                              .colour = colour,
                              .fill = body.firm ? render::Fill2d::hatched : render::Fill2d::plain});
-  // Walls reach into each other: what is firm has one outline, around all of it.
+  // Walls overlap: the fixed bodies have one common outline around all of them.
   auto& lines = body.firm ? drawing_.lines_below : drawing_.lines;
   lines.push_back({.points = body.outline,
                    .closed = true,
@@ -147,7 +147,7 @@ void SceneView2d::draw_soft_body(std::size_t index, View2d view) {
                               .colour = darker(colour)});
     drawing_.dots.push_back({.centres = body.particles, .radius = 0.13f * spacing, .colour = colour});
   } else if (view == View2d::kDots) {
-    // The outer particles as large as they are to others.
+    // The outer particles with the radius of their contacts.
     const auto& positions = body.particles;
     body.outer.clear(), body.at_cut.clear(), body.inner.clear();
     for (const std::uint32_t i : body.model->outer())
@@ -164,7 +164,7 @@ void SceneView2d::draw_soft_body(std::size_t index, View2d view) {
   }
 }
 
-/// Straight when it is taut, else a parabola.
+/// Draws ropes straight when they are taut, else as a parabola.
 void SceneView2d::draw_ropes(const Shown2d& shown) {
   constexpr int kSegments2d = 24;
   ropes_.resize(shown.ropes.size());
@@ -222,7 +222,7 @@ std::optional<render::PixelRect> SceneView2d::changes(const Shown2d& shown, View
   if (moved.isEmpty()) return render::PixelRect{};
   const Camera2d& camera = scene_.camera;
   SC_ASSERT(camera.height > 0, "a camera that shows {} m", camera.height);
-  const float pixels = static_cast<float>(renderer_.height()) / camera.height;  // of a metre
+  const float pixels = static_cast<float>(renderer_.height()) / camera.height;  // per metre
   const auto from_middle = [&](float metres, int side) {
     return static_cast<float>(side) / 2 + pixels * metres;
   };
@@ -231,7 +231,7 @@ std::optional<render::PixelRect> SceneView2d::changes(const Shown2d& shown, View
   const Vector2f reach = Vector2f::Constant(std::max(shadow_reach, kHandRadius) * camera.height +
                                             2 * line_width() + kReach / pixels);
   const Vector2f low = moved.min() - reach - camera.centre, high = moved.max() + reach - camera.centre;
-  // A body that has gone far away must not leave the range of numbers either.
+  // Clamped, because a body that has gone far away must not leave the range of int.
   const auto pixel = [&](float at, int side) {
     return static_cast<int>(std::clamp(at, -1.0f, static_cast<float>(side) + 1));
   };
@@ -255,7 +255,7 @@ void SceneView2d::draw(const Shown2d& shown, const Look& look) {
             shown.rigid_poses.size(), soft_bodies_.size(), rigid_bodies_.size());
   const auto view = static_cast<View2d>(look.view);
   drawing_.clear();
-  // What is firm lies below what moves.
+  // Fixed bodies lie below those that move.
   for (const bool firm : {true, false}) {
     for (std::size_t i = 0; i < rigid_bodies_.size(); ++i) {
       if (rigid_bodies_[i].firm == firm) draw_rigid_body(i, shown.rigid_poses[i]);

@@ -1,6 +1,6 @@
 #pragma once
-// Draws a scene of two dimensions, as cut out of card and laid on squared paper: soft and rigid bodies, what stands
-// firm hatched; over them, if they are asked for, the particles or the lattices; the hands that hold particles.
+// Draws a scene in two dimensions as if it were cut out of card and laid on squared paper: soft and rigid bodies, with fixed ones hatched;
+// over them, on request, the particles or the lattices; and the hands that hold particles.
 
 #include <Eigen/Core>
 #include <array>
@@ -27,28 +27,28 @@ class SceneView2d {
   /// Draws the simulation as it is now.
   const render::Image& draw();
 
-  /// Draws what was copied from the simulation, which may go on meanwhile. The picture is in the renderer, of
-  /// which only what has moved is drawn anew: nobody else may draw frames with it.
+  /// Draws a copy of the simulation, which may go on meanwhile. The picture is in the renderer. Only what has
+  /// moved is redrawn, so nobody else may draw frames with this renderer.
   void draw(const Shown2d& shown, const Look& look);
 
  private:
   using Link = std::array<std::uint32_t, 2>;
 
-  /// A soft body, and its particles for the views that show them.
+  /// A soft body with its particles, for the views that show them.
   struct SoftBody {
     std::shared_ptr<const ppu::SoftBodyModel<2>> model;
     render::Colour colour;
     SoftShape2d shape;
     std::vector<Eigen::Vector2f> particles;  // all, in order
     std::vector<Eigen::Vector2f> outer, at_cut,
-        inner;                // those at a cut are outer ones, too, with a smaller circle
+        inner;                // at_cut: outer particles at a cut, with a smaller circle
     std::vector<Link> edges;  // of all cells
   };
   struct RigidBody {
     RigidShape2d shape;  // about the body's position
     render::Shape2dId id;
     bool firm;                         // it never moves
-    std::optional<float> mark_radius;  // of circles, which one sees turn by a mark
+    std::optional<float> mark_radius;  // for circles, whose rotation a mark shows
     std::vector<render::Vertex2d> vertices;
     std::vector<Eigen::Vector2f> outline;
     std::array<Eigen::Vector2f, 1> mark;
@@ -75,13 +75,13 @@ class SceneView2d {
   WholeSkins wholes_;
   std::vector<RigidBody> rigid_bodies_;
   std::vector<std::unique_ptr<SoftBody>> soft_bodies_;
-  std::vector<std::vector<Eigen::Vector2f>> ropes_;    // the points of each, as they are drawn
+  std::vector<std::vector<Eigen::Vector2f>> ropes_;    // the points of each rope as it is drawn
   std::vector<std::array<Eigen::Vector2f, 2>> hands_;  // the particle, the hand
 
   Moved2d moved_;
-  std::optional<View2d> drawn_view_;  // of the picture before
+  std::optional<View2d> drawn_view_;  // of the previous picture
 
-  Drawing2d drawing_;  // the frame in making
+  Drawing2d drawing_;  // the frame that is being made
 };
 
 }  // namespace softcell::demos

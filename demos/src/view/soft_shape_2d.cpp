@@ -11,13 +11,13 @@ namespace {
 using Eigen::Vector2f;
 using Eigen::Vector2i;
 
-// Lines between colours: shares of the colour's light and of the outline's width. They have smooth edges, which triangles have not.
+// Lines between colours: factors on the colour's light and on the outline's width. Lines have smooth edges, which triangles do not have.
 constexpr float kSeam = 0.6f, kSeamWidth = 0.7f;
 
-/// Of each cell: 0 for the body's own colour, or 1 and the number of the first of its coloured cells with the colour of the
-/// last that it is of.
+/// For each cell 0 if it has the body's own colour; else 1 plus the number of the first of the coloured cells with the same colour as the
+/// last one that contains the cell.
 std::vector<std::uint32_t> colours_of(const SoftBody2dPlacement& body, const ppu::Lattice<2>& lattice) {
-  // Rectangles of one colour make one shape.
+  // Rectangles of the same colour form one shape.
   const auto first_alike = [&](std::uint32_t i) {
     if (body.coloured_cells[i].colour == body.colour) return std::uint32_t{0};
     std::uint32_t first = 0;
@@ -71,7 +71,7 @@ void SoftShape2d::remove_from(render::Renderer& renderer) const {
   for (const Layer& layer : layers_) renderer.remove_shape(layer.shape);
 }
 
-/// @param make  the skins of a whole lattice
+/// @param make  makes the skins of a whole lattice
 template <class Make>
 std::vector<ppu::Skin2d> SoftShape2d::own_skins(WholeSkins& wholes, const Make& make) const {
   if (!model_.is_piece()) return make(model_.lattice());
@@ -96,7 +96,7 @@ SoftShape2d::Layer& SoftShape2d::add_layer(ppu::Skin2d skin) {
   return layer;
 }
 
-/// The whole in the body's own colour, and over it a layer for each colour, in the order in which the scene has them.
+/// Adds the whole body in its own colour, and over it a layer for each colour, in the order in which the scene has them.
 void SoftShape2d::add_skins(render::Renderer& renderer, WholeSkins& wholes) {
   std::vector<ppu::Skin2d> skins = own_skins(wholes, [&](const ppu::Lattice<2>& lattice) {
     std::vector<ppu::Skin2d> made;
@@ -115,13 +115,13 @@ void SoftShape2d::add_skins(render::Renderer& renderer, WholeSkins& wholes) {
     layer.colour = i < 2 ? body_.colour : body_.coloured_cells[i - 2].colour;
     layer.is_part = i > 0;
     if (i < 2) continue;
-    // Between colours an outline turns where the shape's edge does not: its own points say how.
+    // Between colours an outline turns where the shape's edge does not, so its normals come from its own points.
     for (Outline& outline : layer.outlines) outline.normals.clear();
   }
   is_coloured_ = layers_.size() > 1;
 }
 
-/// Of pieces the one that has the cell in the middle of the face.
+/// Of several pieces, the one that has the cell in the middle of the face has the face.
 bool SoftShape2d::has_face() const {
   if (!body_.face || !model_.is_piece()) return body_.face.has_value();
   const auto& cells = model_.whole()->lattice().cells;
@@ -137,7 +137,7 @@ void SoftShape2d::add_picture(render::Renderer& renderer, Stickers& stickers, Wh
   const Picture2d& picture = *body_.picture;
   const auto& [sticker, texture] =
       stickers.get(picture.image, body_.skin_margin() * picture.cell_pixels, renderer);
-  // In grid coordinates: where the sticker, which is larger than the picture, begins and how large it is.
+  // Where the sticker, which is larger than the picture, begins and how large it is, in grid coordinates.
   const Vector2f low =
       picture.low - Vector2f::Constant(static_cast<float>(sticker.border) /
                                        (picture.cell_pixels * static_cast<float>(sticker.scale)));
@@ -168,7 +168,7 @@ void SoftShape2d::add_face(const Face2d& face) {
   };
   const float size = face.size * lattice.spacing;  // metres
   const render::Colour ink = render::srgb(0x1E2530), white = render::srgb(0xFFFFFF);
-  const float eye = 0.215f, height = 0.10f;  // where the eyes are, and all that follows: shares of the size
+  const float eye = 0.215f, height = 0.10f;  // of the eyes; these and the next: fractions of the size
   const auto both = [&](float radius, const render::Colour& colour, const Vector2f& aside) {
     spots_.push_back({.places = {at(-eye, height), at(eye, height)},
                       .aside = {size * aside, size * aside},
@@ -241,7 +241,7 @@ void SoftShape2d::draw(Drawing2d& drawing, float line_width, float opacity) cons
                                .colour = colour});
   };
   for (const Layer& layer : layers_) {
-    // Under a pale part the whole would show.
+    // The whole body would show through a pale part.
     if (opacity < 1 && is_coloured_ && !layer.is_part) continue;
     drawing.shapes.push_back({.shape = layer.shape,
                               .vertices = layer.vertices,

@@ -1,6 +1,5 @@
 #pragma once
-// How a soft body in two dimensions is drawn: its skin in the colours of its cells or with its picture, outlines,
-// and its face.
+// Draws a soft body in two dimensions: its skin in the colours of its cells or with its picture, outlines, and its face.
 
 #include <Eigen/Geometry>
 #include <array>
@@ -20,10 +19,10 @@
 
 namespace softcell::demos {
 
-/// What lines around a colour are drawn in: the colour as ink.
+/// The colour of the lines around an area of this colour.
 inline render::Colour ink_of(const render::Colour& colour) { return 0.22f * colour; }
 
-/// What a picture is composed of. What it refers to belongs to the bodies.
+/// The elements of a picture. What it refers to belongs to the bodies.
 struct Drawing2d {
   std::vector<render::Line2d> lines_below;
   std::vector<render::Shape2d> shapes;
@@ -34,14 +33,14 @@ struct Drawing2d {
   void clear();
 };
 
-/// The stickers of a scene: bodies with one picture and one border share one.
+/// The stickers of a scene: bodies with the same picture and the same border share one.
 class Stickers {
  public:
   struct Entry {
     Sticker sticker;
     render::TextureId texture;
   };
-  /// @param border  in the picture's pixels  @return  valid as long as this
+  /// @param border  in pixels of the picture  @return  valid as long as this object
   const Entry& get(const std::shared_ptr<const render::Image>& picture, float border,
                    render::Renderer& renderer);
 
@@ -49,10 +48,10 @@ class Stickers {
   std::map<std::pair<std::shared_ptr<const render::Image>, float>, Entry> made_;
 };
 
-/// The skins of a scene's bodies before they break, of which pieces have parts. Each is made once.
+/// The skins of a scene's bodies before they break; pieces show parts of these. Each is made once.
 class WholeSkins {
  public:
-  /// @param make  the body's skins  @return  valid as long as this
+  /// @param make  makes the body's skins  @return  valid as long as this object
   template <class Make>
   const std::vector<ppu::Skin2d>& get(const SoftBody2dPlacement& body, const Make& make) {
     const auto known = made_.find(&body);
@@ -63,34 +62,34 @@ class WholeSkins {
   std::map<const SoftBody2dPlacement*, std::vector<ppu::Skin2d>> made_;
 };
 
-/// One body's shape, or that of a piece of it. Used by one thread, with the renderer that it was made with.
+/// The shape of a body or of a piece of it. Used by one thread, with the renderer that it was made with.
 class SoftShape2d {
  public:
   using Box = Eigen::AlignedBox2f;
 
-  /// @param body, model  must outlive it
+  /// @param body, model  must outlive this object
   SoftShape2d(const SoftBody2dPlacement& body, const ppu::SoftBodyModel<2>& model, render::Renderer& renderer,
               Stickers& stickers, WholeSkins& wholes);
-  /// Frees what the renderer has of it: it is drawn no more.
+  /// Frees its resources in the renderer. Do not draw it afterwards.
   void remove_from(render::Renderer& renderer) const;
 
-  /// Deforms it with its particles.
+  /// Deforms it to fit its particles.
   void place(std::span<const Eigen::Vector2f> particles);
 
-  /// Adds it to a drawing, as it was placed last.
-  /// @param line_width  metres  @param opacity  of the body, 0..1; a pale one has no face
+  /// Adds it to a drawing in its last place().
+  /// @param line_width  metres  @param opacity  of the body, 0..1; a pale body has no face
   void draw(Drawing2d& drawing, float line_width, float opacity) const;
 
-  /// Around all that draw() draws, line widths aside.
+  /// A box around everything that draw() draws, line widths aside.
   const Box& box() const { return box_; }
 
  private:
   struct Outline {
     std::vector<std::uint32_t> vertices;
     std::vector<Eigen::Vector2f> points;
-    std::vector<Eigen::Vector2f> normals;  // none of a piece, whose cuts have no slopes
+    std::vector<Eigen::Vector2f> normals;  // empty for a piece, whose cuts have no slopes
   };
-  /// A skin with its outlines: of all of the body, or of its cells of one colour.
+  /// A skin with its outlines: of the whole body, or of its cells of one colour.
   struct Layer {
     ppu::Skin2d skin;
     render::Shape2dId shape = {};
@@ -103,9 +102,8 @@ class SoftShape2d {
   /// Dots of one size on the body.
   struct Spots {
     std::vector<ppu::CellPoint2d> places;
-    std::vector<Eigen::Vector2f>
-        aside;     ///< of each, metres: where the light is, whichever way the body turns
-    float radius;  ///< metres
+    std::vector<Eigen::Vector2f> aside;  ///< of each, metres: towards the light, however the body turns
+    float radius;                        ///< metres
     render::Colour colour;
     float opacity = 1;
     std::vector<Eigen::Vector2f> centres = {};
@@ -127,8 +125,8 @@ class SoftShape2d {
 
   const SoftBody2dPlacement& body_;
   const ppu::SoftBodyModel<2>& model_;
-  std::vector<Layer> layers_;  // the lowest first: the whole, then its parts
-  bool is_coloured_ = false;   // it has parts
+  std::vector<Layer> layers_;  // the lowest first: the whole body, then its parts
+  bool is_coloured_ = false;   // it has parts with their own colours
   std::optional<render::TextureId> texture_;
   std::vector<Spots> spots_;
   std::vector<Stroke> strokes_;

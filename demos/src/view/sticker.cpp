@@ -10,7 +10,7 @@
 namespace softcell::demos {
 namespace {
 
-/// Squared distances along one line to where `line` is 0, plus its values elsewhere: the lower envelope of parabolas
+/// For each place on a line the least sum of `line` elsewhere and the squared distance to there, which is the lower envelope of parabolas
 /// (P. Felzenszwalb, D. Huttenlocher, Distance Transforms of Sampled Functions, 2012).
 class LineDistances {
  public:
@@ -38,7 +38,7 @@ class LineDistances {
     }
     int k = 0;
     for (int q = 0; q < n; ++q) {
-      if (count == 0) return;  // nothing anywhere
+      if (count == 0) return;  // `line` is infinite everywhere
       while (k + 1 < count && from_[static_cast<std::size_t>(k + 1)] < static_cast<float>(q)) ++k;
       const auto away = static_cast<float>(q - at_[static_cast<std::size_t>(k)]);
       result_[static_cast<std::size_t>(q)] =
@@ -54,7 +54,7 @@ class LineDistances {
   std::vector<float> from_, result_;
 };
 
-/// Of each pixel: the distance of its middle to the middle of the nearest with an alpha above half.
+/// For each pixel the distance of its centre to the centre of the nearest pixel with an alpha above half.
 std::vector<float> distances(const render::Image& image) {
   const auto width = static_cast<std::size_t>(image.width), height = static_cast<std::size_t>(image.height);
   std::vector<float> field(width * height);
@@ -94,7 +94,7 @@ Sticker make_sticker(const render::Image& picture, float border) {
   SC_ASSERT(picture.is_whole() && picture.width > 0 && picture.height > 0, "a picture of {} by {} pixels",
             picture.width, picture.height);
   SC_ASSERT(border >= 0, "a border of {} pixels", border);
-  constexpr int kFineSide = 512;  // pixels: of so many a border's edge is smooth
+  constexpr int kFineSide = 512;  // pixels: enough for a border with a smooth edge
   Sticker sticker;
   const int longest = std::max(picture.width, picture.height);
   sticker.scale = std::max((kFineSide + longest - 1) / longest, 1);

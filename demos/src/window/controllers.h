@@ -7,8 +7,8 @@
 
 namespace softcell::demos {
 
-/// Opens game controllers as they are plugged in, motion sensors too, so that their events arrive. Used by
-/// the thread that polls events, while SDL is initialised.
+/// Opens game controllers as they are plugged in, and turns on their motion sensors, so that their events arrive. The thread that polls
+/// events uses it while SDL is initialised.
 class Controllers {
  public:
   void handle(const SDL_Event& event) {

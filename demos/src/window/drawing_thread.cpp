@@ -14,7 +14,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using Seconds = std::chrono::duration<double>;
 
-/// Pictures a second, over half a second.
+/// Pictures per second, averaged over half a second.
 class Rate {
  public:
   void count(Clock::time_point now) {
@@ -33,8 +33,8 @@ class Rate {
   double rate_ = 0;
 };
 
-/// Without a GPU, several samples a pixel, fine shadows and triangles of a pixel or two take more than half of a picture's time: in
-/// a window that time is better spent on more pictures.
+/// Without a GPU, several samples per pixel, fine shadows and triangles of a pixel or two take more than half of a picture's time; a window
+/// uses that time better for more pictures.
 bool draws_in_software(const render::Renderer& renderer) {
   const std::string_view description = renderer.description();
   return description.find("llvmpipe") != std::string_view::npos ||

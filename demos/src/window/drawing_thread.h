@@ -1,6 +1,5 @@
 #pragma once
-// Draws a demo into a window on a thread of its own, so that neither the simulation nor the user's input waits
-// for a picture.
+// Draws a demo into a window on a thread of its own, so that neither the simulation nor the user's input waits for a picture.
 
 #include <atomic>
 #include <cstdint>
@@ -30,13 +29,13 @@ struct Drawn {
   std::uint64_t upload_bytes = 0;  ///< see render::Renderer::uploaded_bytes()
 };
 
-/// The thread that steps the demo and polls the window's events makes, uses and destroys it. Meanwhile the
-/// window's GL context belongs to the drawing thread.
+/// The thread that steps the demo and polls the window's events makes, uses and destroys this object. Meanwhile the window's GL context
+/// belongs to the drawing thread.
 class DrawingThread {
  public:
   /// Waits until the demo's view is made.
   /// @throws std::runtime_error  the window cannot draw.
-  /// @param font,sheet  of the overlays; outlive this
+  /// @param font,sheet  of the overlays; must outlive this object
   DrawingThread(render::Window& window, Demo& demo, const render::OverlayFont& font,
                 const render::Image& sheet);
   /// Finishes the picture that is being drawn.
@@ -44,16 +43,15 @@ class DrawingThread {
   DrawingThread(const DrawingThread&) = delete;
   DrawingThread& operator=(const DrawingThread&) = delete;
 
-  /// What stands over the next picture, to be filled.
+  /// The page that is drawn over the next picture; the caller fills it.
   WindowPage& next_page() { return pages_.next(); }
-  /// Has the drawing thread draw the newest published frame of the demo with next_page() over it, unless a newer
-  /// one is published before.
+  /// Makes the drawing thread draw the newest published frame of the demo with next_page() over it, unless a newer page is published first.
   void show() { pages_.publish(); }
 
   /// Waits for the picture that is being drawn. @throws  the exception of a picture that failed
   const Drawn& finish();
   bool failed() const { return failed_; }
-  /// Pictures that the window showed of late, a second.
+  /// Pictures per second that the window showed recently.
   double shown_per_second() const { return shown_per_second_; }
 
  private:

@@ -5,14 +5,14 @@
 
 namespace softcell::demos {
 
-/// A sentence for the user that stands in the window for some seconds.
+/// A message for the user that stays in the window for some seconds.
 class Notice {
  public:
   void show(std::string sentence) {
     sentence_ = std::move(sentence);
     frames_ = kFrames;
   }
-  /// Once for each frame. Empty: none is shown
+  /// Call it once per frame. Empty: no message is shown
   const std::string& next_frame() {
     if (frames_ == 0 || --frames_ == 0) sentence_.clear();
     return sentence_;

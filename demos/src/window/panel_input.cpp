@@ -94,7 +94,7 @@ bool PanelInput::handle(const SDL_Event& event, float density, const Panel& pane
       change.kind = Change::Kind::kKey;
       change.which = static_cast<std::size_t>(event.key.keysym.scancode);
       change.down = event.type == SDL_KEYDOWN;
-      // A key that went down before the panel was there comes up for others, too.
+      // Other users of the input get the release as well: the key may have gone down before the panel was there.
       return change.down && io.WantCaptureKeyboard;
     }
     case SDL_TEXTINPUT: {
@@ -139,7 +139,7 @@ void PanelInput::begin_frame() {
     const Change& change = coming_.front();
     const bool toggles = change.kind == Change::Kind::kButton || change.kind == Change::Kind::kKey;
     const std::pair which(change.kind, change.which);
-    // Nor does a widget that is left before it is looked at notice the button.
+    // A widget does not notice the button either if the mouse leaves it before Dear ImGui looks.
     if (change.kind == Change::Kind::kMouseAt && !changed.empty()) return;
     if (toggles && std::ranges::find(changed, which) != changed.end()) return;
     if (toggles) changed.push_back(which);

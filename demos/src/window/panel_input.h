@@ -1,5 +1,5 @@
 #pragma once
-// The window's mouse and keys, for Dear ImGui.
+// Passes the window's mouse and keys to Dear ImGui.
 
 #include <SDL.h>
 
@@ -11,25 +11,25 @@
 
 namespace softcell::demos {
 
-/// Concerns Dear ImGui's current context (render::Overlay::make_current()). One thread uses it.
+/// It acts on Dear ImGui's current context (render::Overlay::make_current()). One thread uses it.
 ///
-/// What goes down and up again within a frame would be lost to Dear ImGui, which looks once a frame: the second change of a key or button
-/// waits for the next frame, and everything behind it, too.
+/// Dear ImGui looks once per frame, and would miss a key or button that goes down and up again within a frame. So the second change of a
+/// key or button waits for the next frame, together with all events after it.
 class PanelInput {
  public:
-  /// Lets the widgets be used by keyboard alone.
+  /// Makes the widgets usable by keyboard alone.
   PanelInput();
 
-  /// @param density  pixels in a unit of SDL's mouse
-  /// @return true: the event is the panel's: the mouse is over it, or the keyboard is in it
+  /// @param density  pixels per unit of SDL's mouse
+  /// @return true: the event is for the panel, because the mouse is over it or the keyboard is in it
   /// @param panel  as it was drawn last
   bool handle(const SDL_Event& event, float density, const Panel& panel);
 
-  /// Before each frame of Dear ImGui.
+  /// Call it before each frame of Dear ImGui.
   void begin_frame();
 
  private:
-  /// What has changed of the mouse or the keyboard.
+  /// A change of the mouse or the keyboard.
   struct Change {
     enum class Kind { kMouseAt, kButton, kWheel, kKey, kText };
     Kind kind = Kind::kMouseAt;
@@ -41,8 +41,8 @@ class PanelInput {
   void apply(const Change& change) const;
 
   std::deque<Change> coming_;
-  float x_ = -1, y_ = -1;  // the mouse, pixels
-  Uint32 pressed_ = 0;     // buttons that went down on the panel, and have not come up
+  float x_ = -1, y_ = -1;  // position of the mouse, pixels
+  Uint32 pressed_ = 0;     // buttons that went down on the panel and are still down
 };
 
 }  // namespace softcell::demos

@@ -30,14 +30,14 @@
 namespace softcell::demos {
 namespace {
 
-/// What stands over all scenes of a window.
+/// The overlays of a window, which all its scenes share.
 struct Overlays {
   Overlays(float text_scale, std::vector<SceneTitle> scenes)
       : scale(text_scale), overlay(text_scale), panel(std::move(scenes), pictures) {}
 
-  /// @return true: the event is the panel's
+  /// @return true: the event is for the panel
   bool take(const SDL_Event& event, float density, WindowInput& scene) {
-    if (!scene.look().menu) {  // what went down on it comes up, though
+    if (!scene.look().menu) {  // except for the release of what went down on it
       if (event.type == SDL_KEYUP || event.type == SDL_MOUSEBUTTONUP) input.handle(event, density, panel);
       return false;
     }
@@ -56,7 +56,7 @@ struct Overlays {
 
   float scale;  // of text and sizes
   render::Overlay overlay;
-  PanelInput input;  // of the overlay's context, which is current
+  PanelInput input;  // for the overlay's context, which is current
   ScenePictures pictures;
   Panel panel;
   Notice notice;
@@ -66,7 +66,7 @@ bool is_scene_file(const std::filesystem::path& file) {
   return file.extension() == ".toml" || file.extension() == ".lua";
 }
 
-/// The file that was dropped onto the window. None: the event is another one
+/// The file that was dropped onto the window. None: it is another event
 std::optional<std::filesystem::path> dropped_file(const SDL_Event& event) {
   if (event.type != SDL_DROPFILE && event.type != SDL_DROPTEXT) return std::nullopt;
   const std::unique_ptr<char, decltype(&SDL_free)> name(event.drop.file, SDL_free);
@@ -77,7 +77,7 @@ std::optional<std::filesystem::path> dropped_file(const SDL_Event& event) {
 /// One scene in the window.
 class PlayedScene {
  public:
-  /// @param frames  to be played; without, a replay's, or until the user ends it
+  /// @param frames  after which the scene ends; none: after a replay's frames, or when the user ends it
   PlayedScene(render::Window& window, Demo& demo, const std::optional<int>& frames, Overlays& overlays)
       : window_(window),
         demo_(demo),
@@ -127,7 +127,7 @@ class PlayedScene {
     }
   }
 
-  /// Here and not where pictures are drawn, however few these are: no click is lost.
+  /// The overlay is made here and not where pictures are drawn, so that no click is lost however few pictures there are.
   void draw_overlay(const Page& page) {
     const float scale = overlays_.scale;
     overlays_.panel.follow(page);
@@ -143,14 +143,14 @@ class PlayedScene {
     next.height = page.height;
   }
 
-  // What takes the place of this scene. Null: nothing does; if it cannot be, the window says why.
+  // The demos that replace this scene. Null: nothing replaces it; if that failed, the window says why.
 
-  /// A scene file, or this scene with a body made of a model or a picture where the mouse is.
+  /// The demo of a scene file, or this scene with a body made of a model or a picture at the mouse.
   std::unique_ptr<Demo> with_file(const std::filesystem::path& file, const SimulationOptions& how) {
     if (is_scene_file(file)) return made([&] { return demo_.opened(file, how); });
     return changed({.kind = SceneChange::Kind::kFile, .file = file}, mouse(), how);
   }
-  /// This scene with what the user wants of it in the menu or by keys.
+  /// This scene with the change that the user has asked for in the menu or by keys.
   std::unique_ptr<Demo> with_change(const SimulationOptions& how) {
     std::optional<SceneChange> change = overlays_.panel.take_change();
     if (demo_.input().take_remove()) {
@@ -183,7 +183,7 @@ class PlayedScene {
     SDL_GetWindowSize(window_.sdl(), &size.x(), &size.y());
     return size.cwiseMax(1);
   }
-  /// Of the window, also while something is dragged from another one, of which SDL reports no motion.
+  /// The position of the mouse in the window, also while the user drags something from another window, of which SDL reports no motion.
   Eigen::Vector2i mouse() const {
     Eigen::Vector2i at, window;
     SDL_GetGlobalMouseState(&at.x(), &at.y());
@@ -233,7 +233,7 @@ Run play(const WindowOptions& options, const std::vector<NamedDemo>& scenes, con
   Controllers controllers;
   FrameClock clock;
   std::optional<Look> look;
-  std::unique_ptr<Demo> other;  // to go on with, which is none of `scenes`
+  std::unique_ptr<Demo> other;  // the next demo, if it is none of `scenes`
   bool begins_paused = false;
   for (std::size_t number = 0;;) {
     Run run{.demo = other ? std::exchange(other, nullptr) : scenes[number].make(how), .record = {}};
@@ -277,7 +277,7 @@ Run play(const WindowOptions& options, const std::vector<NamedDemo>& scenes, con
     run.record.interrupted = interrupted();
     if (!next && !other) return run;
     look = run.demo->input().look();
-    look->stroke.reset();  // the next scene's knife has not begun it
+    look->stroke.reset();  // the next scene's knife did not begin it
     look->hands = {};
     if (other && same_scene) {
       begins_paused = run.demo->paused();

@@ -1,5 +1,5 @@
 #pragma once
-// Work for the kernel attach, to measure its stack and its time with.
+// Work for the kernel attach, for measuring its stack and its time.
 
 #include <algorithm>
 #include <cmath>
@@ -40,7 +40,7 @@ class AttachSample {
     job_[0].iterations = 4;
   }
 
-  /// Of all particles. @param breaks  at next to nothing   @param once  as AttachLink::once
+  /// Adds an attachment of all particles. @param breaks  under almost no impulse   @param once  as for AttachLink::once
   void add(spu::AttachKind kind, bool to_rigid, bool breaks, bool once = false) {
     spu::AttachJob& job = job_[0];
     spu::AttachLink& link = links_[job.link_count++];
@@ -98,7 +98,7 @@ class AttachSample {
   dma::Buffer<spu::AttachJob> job_;
 };
 
-/// All kinds, which also break; then, as what is timed, a weld of 20 particles to a rigid body.
+/// Runs all kinds, also with attachments that break; then the timed work, a weld of 20 particles to a rigid body.
 inline void run_attach(SampleRun& sample) {
   AttachSample all(sample.memory(), 20), weld(sample.memory(), 20);
   for (const spu::AttachKind kind :

@@ -8,7 +8,7 @@
 namespace softcell::tool {
 namespace {
 
-/// Cells (x, y, z) of a box of `size` cells for which `inside` is true of their centres, seen from the box's.
+/// Cells (x, y, z) of a box of `size` cells for which `inside` is true at their centres, relative to the box's centre.
 template <typename Inside>
 ppu::Lattice<3> lattice_where(const Eigen::Vector3i& size, const Inside& inside) {
   std::vector<Eigen::Vector3i> cells;
@@ -25,7 +25,7 @@ double square(double v) { return v * v; }
 
 ppu::Lattice<3> block1000() { return bench_block({10, 10, 10}); }
 
-/// A ring of 10 cells with a tube of 4.
+/// A ring 10 cells in diameter with a tube of 4 cells.
 ppu::Lattice<3> torus() {
   return lattice_where({14, 14, 4}, [](double x, double y, double z) {
     return square(std::hypot(x, y) - 4.8) + square(z) < square(2);

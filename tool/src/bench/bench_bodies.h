@@ -18,17 +18,17 @@ struct BenchBody {
 /// block1000, torus, shell, penguin150 and car; about 150 to 1000 particles, 0.1 m apart.
 std::span<const BenchBody> bench_bodies();
 
-/// A block, likewise. @param particles  along each axis
+/// A block of particles 0.1 m apart. @param particles  along each axis
 ppu::Lattice<3> bench_block(const Eigen::Vector3i& particles);
 
-/// Particles in one measurement, in as many bodies as that makes: waking an SPE does not count then, and the
-/// data of all bodies are more than the nearest caches hold, as in a scene.
+/// Particles in one measurement, in as many bodies as that needs: then the time to wake an SPE is negligible, and the data of all bodies
+/// are more than the nearest caches hold, as in a scene.
 inline constexpr std::size_t kBenchParticles = 16'000;
-/// Of the bodies of all benchmarks of solvers: metres, seconds, kg/m^3.
+/// The same for the bodies of all solver benchmarks: metres, seconds, kg/m^3.
 inline constexpr float kSpacing = 0.1f, kStep = 1.0f / 60, kAlpha = 0.5f, kDamping = 0.1f, kDensity = 1000;
 inline constexpr std::size_t kBodiesPerJob = 16;
 
-/// A bent pose of a body, the same for all solvers: where a particle is.
+/// The position of a particle in a bent pose of the body, which is the same for all solvers.
 Eigen::Vector3f bent_position(const ppu::Lattice<3>& lattice, std::size_t particle);
 
 }  // namespace softcell::tool

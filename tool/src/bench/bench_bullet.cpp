@@ -12,7 +12,7 @@
 #include "ppu/bullet/bullet_vector.h"
 #include "softcell/base/assert.h"
 
-// Behind the others.
+// Included after the others: see bullet_links.h.
 #include "bullet_links.h"
 
 namespace softcell::tool {
@@ -70,7 +70,7 @@ class BulletSoftBody {
   std::vector<btVector3> bent_;
 };
 
-/// Several of them, as of the other solvers.
+/// Several such bodies, as for the other solvers.
 struct BulletBodies {
   BulletBodies(const ppu::Lattice<3>& lattice, BulletSoftBody::Held held) {
     SC_ASSERT(!lattice.particles.empty(), "{} cells without particles", lattice.cells.size());

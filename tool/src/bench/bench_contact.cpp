@@ -1,4 +1,5 @@
-// Whole frames in which bodies touch: contacts of what is drawn, rigid spheres at particles, and Bullet's own soft bodies.
+// Whole frames in which bodies touch: with our contacts of the drawn surfaces, with rigid spheres at particles, and with Bullet's own soft
+// bodies.
 
 #include <fmt/format.h>
 #include <time.h>
@@ -18,7 +19,7 @@
 #include "softcell/bullet/bullet_soft_bodies.h"
 #include "softcell/spe_bodies/spe_runtime.h"
 
-// Behind the others.
+// Included after the others: see bullet_links.h.
 #include <BulletSoftBody/btSoftBodyRigidBodyCollisionConfiguration.h>
 #include <BulletSoftBody/btSoftRigidDynamicsWorld.h>
 #include <btBulletDynamicsCommon.h>
@@ -33,7 +34,7 @@ using ppu::to_bullet;
 
 constexpr int kFramesOfRun = 10;
 
-/// A scene, the first of its bodies, and the frames of it that are measured.
+/// A scene, the number of its bodies that are used, and the frames that are measured.
 struct ContactCase {
   const char* name;
   const char* scene;
@@ -56,7 +57,7 @@ demos::Scene scene_of(const ContactCase& of) {
   return scene;
 }
 
-/// A scene that goes on by frames of 1/60 s.
+/// A scene that is simulated in frames of 1/60 s.
 class Frames {
  public:
   virtual ~Frames() = default;
@@ -64,7 +65,7 @@ class Frames {
   virtual std::size_t particles() const = 0;
 };
 
-/// As `softcell demo 3d` simulates it, skinning included.
+/// A scene as `softcell demo 3d` simulates it, skinning included.
 class OurFrames final : public Frames {
  public:
   OurFrames(demos::Scene scene, ppu::ContactMethod contacts)
@@ -77,8 +78,8 @@ class OurFrames final : public Frames {
   demos::Simulation3d simulation_;
 };
 
-/// The same with Bullet's soft bodies: a node for each particle, links along edges and across faces of cells, the whole body's pose, and
-/// contacts of clusters with rigid bodies and other soft bodies.
+/// The same scene with Bullet's soft bodies: a node for each particle, links along edges and across faces of cells, the whole body's pose,
+/// and contacts of clusters with rigid bodies and other soft bodies.
 class BulletFrames final : public Frames {
  public:
   explicit BulletFrames(const demos::Scene& scene) : substeps_(scene.substeps) {
@@ -166,10 +167,10 @@ std::chrono::nanoseconds processor_time_of_all_threads() {
   return std::chrono::seconds(now.tv_sec) + std::chrono::nanoseconds(now.tv_nsec);
 }
 
-/// A floor of triangles, some 0.6 m x 0.6 m of which are near a body.
+/// A floor of triangles, of which about 0.6 m x 0.6 m are near a body.
 class TriangleFloor {
  public:
-  /// @param edge  metres, of the squares that two triangles make
+  /// @param edge  metres, of the squares, each of which is two triangles
   explicit TriangleFloor(float edge) {
     constexpr float kHalf = 1.2f;  // metres
     const int count = static_cast<int>(2 * kHalf / edge);
@@ -252,7 +253,7 @@ constexpr ContactCase kMeshCases[] = {{"mesh", "", 1, 40, 160}, {"coarse_mesh", 
 
 using MakeFrames = std::function<std::unique_ptr<Frames>()>;
 
-/// The frames of a case, again and again; only they count.
+/// Runs the frames of a case again and again; only the measured frames count.
 class Cycle {
  public:
   Cycle(const ContactCase& of, MakeFrames make) : case_(of), make_(std::move(make)) { begin(); }

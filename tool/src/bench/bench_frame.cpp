@@ -1,4 +1,4 @@
-// Whole frames of scenes, and of the same scenes with loose Bullet spheres in the place of soft bodies.
+// Whole frames of scenes, and of the same scenes with loose Bullet spheres instead of soft bodies.
 
 #include <BulletCollision/CollisionShapes/btSphereShape.h>
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
@@ -25,7 +25,7 @@ using demos::kFrameSeconds;
 
 using SoftFrames = SceneFrames<demos::Scene, demos::Simulation3d>;
 
-/// A substep's shape matching and damping of a scene's bodies as they are, again and again, on one SPE.
+/// Repeats a substep's shape matching and damping of a scene's bodies in their present state on one SPE.
 class SolverSteps {
  public:
   explicit SolverSteps(const SoftFrames& frames)
@@ -35,7 +35,7 @@ class SolverSteps {
     SC_ASSERT(step_ > 0 && !bodies_.empty(), "{} bodies with steps of {} s", bodies_.size(), step_);
     for (ppu::SoftBody<3>& body : bodies_) pointers_.push_back(&body);
     solver_.kick(pointers_, step_);
-    // Once, so that rotations are known: of a dropped step a body in tiles does not keep them.
+    // One step is completed, so that rotations are known: a body in tiles does not keep those of a dropped step.
     solver_.finish();
   }
 
@@ -121,7 +121,7 @@ void add_scene(std::vector<Benchmark>& all, const std::string& scene) {
 void add_frame_benchmarks(std::vector<Benchmark>& all) {
   add_scene(all, "arena");
   add_scene(all, "penguins");
-  add_scene(all, "big");  // nothing touches it
+  add_scene(all, "big");  // nothing touches its body
   all.push_back({"frame/arena/spheres", [] {
                    const auto frames = std::make_shared<SphereFrames>("arena");
                    return Work{1, [=] { frames->step(); }};

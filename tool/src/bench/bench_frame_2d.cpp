@@ -1,4 +1,4 @@
-// Frames of the 2D demo without pictures, next to circles of Box2D alone.
+// Frames of the 2D demo without pictures, compared with circles in Box2D alone.
 
 #include <box2d/b2_body.h>
 #include <box2d/b2_circle_shape.h>
@@ -20,14 +20,13 @@
 namespace softcell::tool {
 namespace {
 
-constexpr int kFramesBefore2d = 300;  // so that all is on the floor when measuring begins
+constexpr int kFramesBefore2d = 300;  // so that everything is on the floor when measuring begins
 constexpr int kFrames2d = 20;         // in one measurement
 using demos::kFrameSeconds;
 
 using SoftFrames2d = SceneFrames<demos::Scene2d, demos::Simulation2d>;
 
-/// A scene of walls and soft bodies, with a loose circle for each particle: what Box2D alone costs, all of
-/// them colliding.
+/// A scene of walls and soft bodies, in which a loose circle replaces each particle: the cost of Box2D alone when all of them collide.
 class CircleFrames {
  public:
   explicit CircleFrames(const std::string& name) {

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kMicrosecond = 1e3, kMillisecond = 1e6;
 
-/// Of several prefixes that a name has, the longest counts.
+/// If a name has several of the prefixes, the longest counts.
 constexpr std::array<BenchGroup, 12> kGroups{
     {{"frame/", "Whole frames of 1/60 s, without pictures, and parts of them", "a frame", "ms", kMillisecond,
       BenchPeer::kFrame},

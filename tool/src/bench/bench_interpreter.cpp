@@ -1,4 +1,4 @@
-// What an instruction of a program built for the SPU costs.
+// The cost of an instruction of a program built for the SPU.
 
 #include <memory>
 #include <stdexcept>
@@ -14,8 +14,8 @@
 namespace softcell::tool {
 namespace {
 
-/// A loop of integer and floating-point arithmetic, shuffles, loads, a store and branches. argp's upper word is how
-/// often it is run, a multiple of four.
+/// A loop of integer and floating-point arithmetic, shuffles, loads, a store and branches. argp's upper word is the number of times that it
+/// runs, a multiple of four.
 constexpr std::uint32_t kMix[] = {
     0x42080006,  //       ila     $6,0x1000
     0x420FFF95,  //       ila     $21,0x1fff

@@ -18,12 +18,12 @@ namespace {
 
 constexpr std::uint64_t kMostFileBytes = std::uint64_t{16} << 20;
 
-/// A result and what it is compared to.
+/// A result and the results to which it is compared.
 struct Row {
   const BenchResult& result;
   std::string peer;               ///< empty: it has none
-  std::optional<double> factor;   ///< times as long as its peer
-  std::optional<double> against;  ///< times as long as in the earlier run
+  std::optional<double> factor;   ///< its time divided by that of its peer
+  std::optional<double> against;  ///< its time divided by that in the earlier run
 
   bool is_slower() const { return against && *against > kSlower; }
 };

@@ -1,4 +1,4 @@
-// The rotations nearest to matrices, alone: four at a time on an SPE, and one after the other on the PPU.
+// Only the search for the rotations nearest to matrices: four at a time on an SPE, and one after the other on the PPU.
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -24,13 +24,13 @@ constexpr std::size_t kGroupsOfFour = 128, kMatrices = 4 * kGroupsOfFour;
 constexpr std::uint32_t kRepeats = 32;  // in one job, so that its dispatch does not count
 constexpr float kTurn = 0.01f;          // radians since the last step
 
-/// A matrix and where to look for its rotation from.
+/// A matrix, and where the search for its rotation begins.
 struct RotationCase {
   Eigen::Matrix3f matrix;
   Eigen::Quaternionf start;
 };
 
-/// What a rotation is made of.
+/// Random numbers, directions and matrices.
 struct Random {
   std::mt19937 bits{11};
   std::uniform_real_distribution<float> uniform{-1, 1};
@@ -45,7 +45,7 @@ struct Random {
 
 RotationCase any_matrix(Random& random) { return {random.matrix(), Eigen::Quaternionf::Identity()}; }
 
-/// R S with S near one, seen from a step in which R was turned by kTurn less.
+/// R S with S near one; the search begins at R turned back by kTurn, as after a step.
 RotationCase deformed_a_little(Random& random) {
   const Eigen::Quaternionf r(Eigen::AngleAxisf(3 * random.uniform(random.bits), random.direction()));
   const Eigen::Matrix3f strain = 0.05f * random.matrix();
@@ -99,7 +99,7 @@ class RotationRig {
     for (const RotationCase& c : cases_) {
       Eigen::Quaternionf rotation = c.start;
       const Eigen::Matrix3f found = ppu::update_rotation(c.matrix, rotation);
-      asm volatile("" ::"m"(found) : "memory");  // every rotation has to be found
+      asm volatile("" ::"m"(found) : "memory");  // keeps the compiler from leaving out any rotation
     }
   }
 

@@ -1,4 +1,4 @@
-// Skinning on an SPE beside its scalar twin.
+// Skinning on an SPE, compared with its scalar twin.
 
 #include <array>
 #include <functional>
@@ -18,11 +18,12 @@
 namespace softcell::tool {
 namespace {
 
-constexpr std::size_t kSkinnedBodies = 8;  // in one frame, so that waking the SPE does not count
+constexpr std::size_t kSkinnedBodies = 8;  // in one frame, so that the time to wake the SPE is negligible
 
-/// A body in a bent pose, so that nothing is a special case. It moves: what is where it was two frames before is not skinned again.
+/// A body in bent poses, so that nothing is a special case. It moves, because a body that is where it was two frames before is not skinned
+/// again.
 struct SkinCase {
-  static constexpr std::size_t kPoses = 3;  // in turn
+  static constexpr std::size_t kPoses = 3;  // used in turn
 
   SkinCase(const ppu::TriangleMesh& body_mesh, float cell_size)
       : lattice(ppu::voxelize(body_mesh, cell_size)),

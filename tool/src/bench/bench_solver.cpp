@@ -1,5 +1,4 @@
-// Shape matching and damping: the kernel match on one SPE beside the PPU's solver, on bodies of several
-// kinds.
+// Shape matching and damping of bodies of several kinds: the kernel match on one SPE, compared with the PPU's solvers.
 
 #include <fmt/format.h>
 
@@ -24,9 +23,9 @@
 namespace softcell::tool {
 namespace {
 
-/// What all solvers work on: several bodies of one model, so that none has one body's data in its caches.
+/// The input of all solvers: several bodies of one model, so that no solver has one body's data in its caches.
 struct Model {
-  /// @param copies  0: as many as make kBenchParticles
+  /// @param copies  0: as many as give kBenchParticles
   Model(ppu::Lattice<3> body, int half_width, std::size_t copies = 0)
       : lattice(std::move(body)),
         plan(std::make_shared<const ppu::MatchingPlan<float, 3>>(lattice, half_width,
@@ -41,7 +40,7 @@ struct Model {
   ppu::Lattice<3> lattice;
   std::shared_ptr<const ppu::MatchingPlan<float, 3>> plan;
   std::size_t bodies;
-  std::vector<Eigen::Vector3f> x;  // of each
+  std::vector<Eigen::Vector3f> x;  // of each body
 };
 
 /// The kernel match on one SPE.
@@ -82,7 +81,7 @@ class SpeBodies {
   ppu::JobImage image_;
   ppu::MatchBodies<3> spes_;
   std::vector<std::size_t> all_;  // 0, 1, 2, ...
-  ppu::JobChain chain_;           // last, so that it has ended before what its jobs work on goes
+  ppu::JobChain chain_;           // last, so that it ends before the memory of its jobs is freed
 };
 
 void step(ppu::EigenSolver<3>& solver, std::span<const Eigen::Vector3f> x, std::span<Eigen::Vector3f> v) {
@@ -93,7 +92,7 @@ void step(ppu::ShapeMatcher<float, 3>& solver, std::span<const Eigen::Vector3f> 
   solver.step_velocities(x, v, kAlpha, kStep, kDamping);
 }
 
-/// A solver of the PPU's for each body.
+/// A PPU solver for each body.
 template <typename Solver>
 class PpuBodies {
  public:

@@ -1,4 +1,4 @@
-// Shape matching and damping in two dimensions: the kernel match_2d on one SPE beside the PPU's solver.
+// Shape matching and damping in two dimensions: the kernel match_2d on one SPE, compared with the PPU's solvers.
 
 #include <fmt/format.h>
 
@@ -23,7 +23,7 @@
 namespace softcell::tool {
 namespace {
 
-constexpr std::size_t kParticlesAtOnce = 16'000;  // so many in one measurement: waking the SPE does not count
+constexpr std::size_t kParticlesAtOnce = 16'000;  // so many that waking the SPE does not count
 
 /// The man of the 2D demo.
 ppu::Lattice<2> man132() {
@@ -102,7 +102,7 @@ struct SolverCase2d {
   ppu::JobImage image;
   ppu::MatchBodies<2> spes;
   std::vector<std::size_t> all;  // 0, 1, 2, ...
-  ppu::JobChain chain;           // behind what its jobs work on, so that it has ended before that goes
+  ppu::JobChain chain;           // after the memory of its jobs, so that it ends before that is freed
   ppu::EigenSolver<2> eigen;
   ppu::ShapeMatcher<float, 2> shared_sums, naive_sums;
   std::vector<Eigen::Vector2f> x, v;

@@ -1,4 +1,4 @@
-// What an SPE itself costs: transfers next to memcpy of the same bytes, commands, dispatch of jobs.
+// The costs of an SPE itself: transfers, compared with memcpy of the same bytes, commands, and dispatch of jobs.
 
 #include <array>
 #include <cstring>
@@ -18,7 +18,7 @@ namespace softcell::tool {
 namespace {
 
 constexpr std::size_t kBlockBytes = 16384;
-constexpr std::size_t kBlocks = 2048;    // commands in one job, so that its dispatch does not count
+constexpr std::size_t kBlocks = 2048;    // commands in one job, so that its dispatch is negligible
 constexpr std::size_t kCommands = 8192;  // in one job, of 16 bytes
 constexpr std::uint32_t kBlocksInFlight = 2, kCommandsInFlight = 8;
 constexpr std::size_t kQueuedJobs = 1000;
@@ -47,7 +47,7 @@ class TransfersRig {
     run_jobs(1, descriptor_.ea());
   }
 
-  /// Jobs that return at once, one stage.
+  /// Runs jobs that return at once, in one stage.
   void run_empty_jobs(std::size_t count) { run_jobs(count, {}); }
 
  private:
@@ -69,24 +69,24 @@ class TransfersRig {
   dma::Buffer<std::byte> data_;
 };
 
-/// The same blocks by memcpy between the same kinds of memory: two blocks of one to two of the other.
+/// Copies the same blocks by memcpy between the same kinds of memory: two blocks to two others.
 class Memcpy {
  public:
   void run() {
     for (std::size_t i = 0; i < kBlocks; ++i) {
       const std::size_t offset = i % kBlocksInFlight * kBlockBytes;
       std::memcpy(to_->data() + offset, from_->data() + offset, kBlockBytes);
-      asm volatile("" ::"r"(to_->data()) : "memory");  // every copy has to happen
+      asm volatile("" ::"r"(to_->data()) : "memory");  // keeps the compiler from leaving out any copy
     }
   }
 
  private:
-  /// Aligned as DMA wants it: memcpy of 16 KB takes 105 to 185 ns, by the low bits of both addresses.
+  /// Aligned as DMA requires: memcpy of 16 KB takes 105 to 185 ns, depending on the low bits of both addresses.
   struct alignas(128) Blocks : std::array<std::byte, kBlocksInFlight * kBlockBytes> {};
   std::unique_ptr<Blocks> from_ = std::make_unique<Blocks>(), to_ = std::make_unique<Blocks>();
 };
 
-/// A benchmark of a rig that is made for it, or shared.
+/// A benchmark of a rig that is made when it is needed, and may be shared.
 template <typename Rig, typename Run>
 Benchmark on(const Shared<Rig>& shared, std::string name, std::size_t items, Run run) {
   return {std::move(name), [=] { return Work{items, [rig = shared.get(), run] { run(*rig); }}; }};

@@ -52,8 +52,8 @@ class LargeBody {
     body_.end_step();
   }
 
-  /// How six SPEs would share a step: each job is timed alone, then given to the SPE that is free first, as
-  /// the job loops take them. A pass begins when all SPEs have ended the one before.
+  /// How six SPEs would share a step: each job is timed alone, then assigned to the SPE that is free first, as the job loops take jobs. A
+  /// pass begins when all SPEs have finished the previous one.
   std::string shares() {
     using Milliseconds = std::chrono::duration<double, std::milli>;
     constexpr std::size_t kSpes = dma::kSpeCount;
@@ -86,7 +86,7 @@ class LargeBody {
     if (!chain_.failures().empty()) throw std::runtime_error(chain_.failures().front().message);
   }
 
-  /// The least of some runs: whatever else the host does only adds to it.
+  /// The least time of some runs, because whatever else the host does only adds to it.
   std::chrono::nanoseconds time_alone(dma::EffectiveAddress argp) {
     chain_.clear();
     chain_.add({.image = image_, .argp = argp});
@@ -106,7 +106,7 @@ class LargeBody {
   ppu::JobSystem jobs_;
   ppu::JobImage image_;
   ppu::TiledMemory body_;
-  ppu::JobChain chain_;  // last, so that it has ended before what its jobs work on goes
+  ppu::JobChain chain_;  // last, so that it ends before the memory of its jobs is freed
 };
 
 /// @param particles  along each axis

@@ -39,7 +39,7 @@ std::vector<Benchmark> all_benchmarks() {
   return all;
 }
 
-/// Those whose name the user asks for, in the order in which they are reported.
+/// The benchmarks with names that the user asks for, in the order of the report.
 std::vector<Benchmark> chosen_benchmarks(const std::string& filter_text) {
   std::vector<Benchmark> all = all_benchmarks();
   SC_ASSERT(
@@ -58,10 +58,10 @@ std::vector<Benchmark> chosen_benchmarks(const std::string& filter_text) {
   return all;
 }
 
-/// What is measured of one benchmark.
+/// A benchmark's work and its measured times.
 struct Measurement {
   Work work;
-  std::vector<double> nanoseconds = {};  // per item, one for each round; sorted in the end
+  std::vector<double> nanoseconds = {};  // per item, one for each round; sorted at the end
 
   double least() const {
     SC_ASSERT(!nanoseconds.empty(), "a measurement of {} items has no rounds", work.items);
@@ -78,7 +78,7 @@ std::chrono::nanoseconds spent(const Work& work) {
   return work.spent ? work.spent() : std::chrono::steady_clock::now().time_since_epoch();
 }
 
-/// Incomplete when interrupted.
+/// Measures all benchmarks. The result is incomplete if interrupted.
 std::vector<Measurement> measure(const std::vector<Benchmark>& benchmarks, int rounds,
                                  const InterruptGuard& guard) {
   std::vector<Measurement> all;
@@ -88,9 +88,9 @@ std::vector<Measurement> measure(const std::vector<Benchmark>& benchmarks, int r
     all.push_back({benchmark.prepare()});
     SC_ASSERT(all.back().work.items > 0 && all.back().work.run, "{} has {} items of work", benchmark.name,
               all.back().work.items);
-    all.back().work.run();  // caches, first allocations
+    all.back().work.run();  // fills caches and makes first allocations
   }
-  // Round by round, so that a change of the machine's speed meets all alike.
+  // Round by round, so that a change of the machine's speed affects all benchmarks equally.
   for (int round = 0; round < rounds; ++round) {
     for (Measurement& m : all) {
       if (guard.interrupted()) return all;

@@ -1,5 +1,5 @@
 #pragma once
-// softcell bench: kernels and what they are compared with, measured in turn in one run.
+// softcell bench: measures kernels and what they are compared with, in turn and in one run.
 
 #include <filesystem>
 #include <memory>
@@ -12,7 +12,7 @@ namespace softcell::tool {
 
 struct BenchOptions {
   std::string filter;                            ///< regular expression; empty: all
-  int rounds = 31;                               ///< in each of which every benchmark runs once
+  int rounds = 31;                               ///< each benchmark runs once per round
   bool list = false;                             ///< print names, measure nothing
   std::optional<std::filesystem::path> compare;  ///< figures of an earlier run
   std::optional<std::filesystem::path> json;

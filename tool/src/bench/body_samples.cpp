@@ -63,18 +63,18 @@ void run_skin(SampleRun& sample) {
   };
   skin(0);
   sample.begin_timing();
-  skin(-1.5f);  // below the body, as skinners choose it
+  skin(-1.5f);  // below the body, as the skinners choose it
 }
 
 /// A block of 1,000 particles.
 ppu::Lattice<3> block() { return ppu::voxelize(ppu::make_box({0.899f, 0.899f, 0.899f}, 1), 0.1f); }
 
-/// Where its particles are when it is a little bent.
+/// The position of a particle when the block is a little bent.
 Eigen::Vector3f bent(const Eigen::Vector3f& x) {
   return {x.x() + 0.05f * x.y() * x.y(), x.y() - 0.03f * x.z(), x.z() + 0.02f * x.x() * x.y()};
 }
 
-/// One SPE's share of a step of one body, as MatchBodies makes it.
+/// One SPE's share of a step of one body, in the form that MatchBodies makes.
 void run_match(SampleRun& sample) {
   const ppu::Lattice<3> lattice = block();
   const std::size_t particles = lattice.particles.size();
@@ -96,7 +96,7 @@ void run_match(SampleRun& sample) {
   job[0].pull = 30;
   job[0].damping = 0.1f;
   job[0].most_iterations = 6;
-  // Rotations from nothing, then from the last step: the deepest ways through the kernel.
+  // First with unknown rotations, then with those of the last step: these are the deepest paths through the kernel.
   const auto step = [&](bool is_cold) {
     SC_ASSERT(state.size_bytes() >= sizeof(spu::MatchResult), "a state of {} bytes has no room for a result",
               state.size_bytes());
@@ -105,7 +105,7 @@ void run_match(SampleRun& sample) {
   };
   step(true);
   step(false);
-  // And as a body moves from step to step.
+  // Then with the body moved as from one step to the next.
   for (std::size_t i = 0; i < particles; ++i) {
     const Eigen::Vector3f x = bent(lattice.rest_position(i));
     positions[i] = {x.x(), x.y(), x.z(), 0};
@@ -115,7 +115,7 @@ void run_match(SampleRun& sample) {
   step(false);
 }
 
-/// A step of three bodies, as MatchBodies makes it.
+/// A step of three bodies, in the form that MatchBodies makes.
 void run_match_2d(SampleRun& sample) {
   constexpr std::uint32_t kBodiesOfJob = 3;
   const std::vector<std::string> rows(9, "#########");
@@ -137,7 +137,7 @@ void run_match_2d(SampleRun& sample) {
   sample.run(job.ea(), kBodiesOfJob * lattice.particles.size());
 }
 
-/// All passes over a body in tiles, rotations from nothing and then from the last step.
+/// All passes over a body in tiles, first with unknown rotations and then with those of the last step.
 void run_match_tiles(SampleRun& sample) {
   const ppu::Lattice<3> lattice = block();
   const ppu::TilePlan plan(lattice, {lattice, 2, ppu::particle_masses(lattice, 1000)},
@@ -166,7 +166,7 @@ void run_match_tiles(SampleRun& sample) {
   sample.worked(lattice.particles.size());
 }
 
-/// A body that may break, and one that looks whether it yields.
+/// A body that may break, and one that is tested for yielding.
 void run_strain(SampleRun& sample) {
   ppu::SoftBodySettings glass{.cell_size = 0.1f, .half_width = 2}, tin = glass;
   glass.fracture = ppu::Fracture{.stretch = 0.3f, .turn = 0.8f};
@@ -182,7 +182,7 @@ void run_strain(SampleRun& sample) {
   }
   const auto look_at = [&](const ppu::SoftBody<3>& body) {
     ppu::StrainLooks<3> looks(sample.memory(), body.shared_model(), {}, particles, 1);
-    looks.job(0, body, positions.ea());  // a rest shape's distances come at the second time
+    looks.job(0, body, positions.ea());  // the distances in the rest shape are only there at the second call
     const auto job = looks.job(0, body, positions.ea());
     SC_ASSERT(job.has_value(), "nothing to look for in a body of {} particles", particles);
     sample.run(*job, particles);

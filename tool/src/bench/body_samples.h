@@ -1,5 +1,5 @@
 #pragma once
-// Work for the kernels of soft bodies, to measure their stacks with: it takes lattices and plans to make it.
+// Work for the kernels of soft bodies, for measuring their stacks. Making it needs lattices and plans.
 
 #include <span>
 
@@ -7,7 +7,7 @@
 
 namespace softcell::tool {
 
-/// Of match, match_2d, match_tiles and skin.
+/// Samples for match, match_2d, match_tiles, skin and the other kernels of soft bodies.
 std::span<const KernelSample> body_samples();
 
 }  // namespace softcell::tool

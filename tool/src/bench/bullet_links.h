@@ -1,5 +1,5 @@
 #pragma once
-// Bullet's soft bodies on lattices. To be included behind softcell's headers: btSoftBody.h has a global variable named `seed`.
+// Bullet's soft bodies on lattices. Include it after softcell's headers: btSoftBody.h has a global variable named `seed`.
 
 #include <BulletSoftBody/btSoftBody.h>
 
@@ -8,7 +8,7 @@
 
 namespace softcell::tool {
 
-/// Links along the edges and across the faces of cells. @pre the body's nodes are the lattice's particles
+/// Appends links along the edges and across the faces of cells. @pre the body's nodes are the lattice's particles
 inline void append_links(const ppu::Lattice<3>& lattice, btSoftBody& body) {
   for (std::size_t i = 0; i < lattice.particles.size(); ++i) {
     for (const std::uint32_t other : lattice.neighbours[i]) {

@@ -1,5 +1,5 @@
 #pragma once
-// Work for the kernels contact_find and contact_solve, to measure their stacks with.
+// Work for the kernels contact_find and contact_solve, for measuring their stacks.
 
 #include <algorithm>
 #include <cmath>
@@ -14,7 +14,7 @@
 
 namespace softcell::tool {
 
-/// Two balls that overlap: their contacts are found, solved, and the cells stiffened.
+/// Two overlapping balls: finds their contacts, or solves one and stiffens a cell.
 inline void run_contacts(SampleRun& sample, bool solves) {
   ppu::SoftBodySettings settings;
   settings.cell_size = 0.2f;
@@ -49,7 +49,7 @@ inline void run_contacts(SampleRun& sample, bool solves) {
     auto job = ppu::contact_buffer<spu::SolveJob>(sample.memory(), "job", 1);
     job[0].tasks_ea = task.ea().value;
     job[0].task_count = 1;
-    // With a rigid body, and as what is timed with another soft one.
+    // First with a rigid body, then, as the timed work, with another soft body.
     const spu::SolveTask between_bodies = task[0];
     const spu::SolveContact contact_of_bodies = contacts[0];
     auto rigids = ppu::contact_buffer<spu::SolveRigid>(sample.memory(), "rigid body", 1);
@@ -83,7 +83,7 @@ inline void run_contacts(SampleRun& sample, bool solves) {
       state[boxes * 6 + i] = {x.x(), x.y(), x.z(), 0};
       state[boxes * 6 + particles + i] = {x.x(), x.y(), x.z(), 1};
     }
-    // Boxes around everything: all cells are near.
+    // With boxes around everything, so that all cells are near.
     for (std::size_t q = 0; q < boxes * 6; ++q) {
       const float side = q % 6 < 3 ? -2.0f : 2.0f;
       state[q] = {side, side, side, side};

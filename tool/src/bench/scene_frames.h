@@ -9,12 +9,12 @@
 
 namespace softcell::tool {
 
-/// A scene as a demo simulates it, skinning included.
-/// @tparam Simulation  Simulation2d or Simulation3d, for the scene of its dimension
+/// A scene, simulated as a demo simulates it, skinning included.
+/// @tparam Simulation  Simulation2d or Simulation3d, matching the scene's dimension
 template <typename Scene, typename Simulation>
 class SceneFrames {
  public:
-  /// @param frames_before  frames that are simulated at once, so that bodies lie where they come to rest
+  /// @param frames_before  frames that the constructor simulates, so that bodies lie where they come to rest
   SceneFrames(Scene scene, int frames_before) : scene_(std::move(scene)), simulation_(scene_, {}) {
     SC_ASSERT(frames_before >= 0, "{} frames before those of scene {}", frames_before, scene_.name);
     for (int i = 0; i < frames_before; ++i) step();

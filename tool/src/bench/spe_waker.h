@@ -1,14 +1,13 @@
 #pragma once
-// SPEs awake, for benchmarks of what they then do.
+// Wakes SPEs, for benchmarks of what they do then.
 
 #include "kernel_runs/kernel_file.h"
 #include "softcell/jobs/job_system.h"
 
 namespace softcell::tool {
 
-/// An SPE that has slept for milliseconds takes the host 40 us to wake, whatever it is woken for: 7 % of
-/// 16,000 particles. dispatch/round_trip measures that; a benchmark of something else has it done before its
-/// time begins.
+/// The host takes 40 us to wake an SPE that has slept for milliseconds, whatever it is woken for: 7 % of the time for 16,000 particles.
+/// dispatch/round_trip measures that; other benchmarks wake their SPE before their timed part.
 class SpeWaker {
  public:
   /// @param jobs  must outlive the waker

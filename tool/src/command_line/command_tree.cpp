@@ -8,7 +8,7 @@
 namespace softcell::tool {
 namespace {
 
-/// Sorted: the parser's order is that of addresses.
+/// Sorted, because the parser has the options in the order of their addresses.
 std::vector<std::string> names_of(const std::set<CLI::Option*>& options) {
   std::vector<std::string> names;
   for (const CLI::Option* option : options) names.push_back(option->get_name());

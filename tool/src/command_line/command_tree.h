@@ -1,6 +1,5 @@
 #pragma once
-// The command line as plain data: the one source of what --help, the manual page and the shell completions
-// say.
+// The command line as plain data: the one source of --help, the manual page and the shell completions.
 
 #include <string>
 #include <vector>
@@ -12,17 +11,18 @@ class App;
 namespace softcell::tool {
 
 struct CommandOption {
-  std::vector<std::string> names;  ///< with their dashes, short ones first; a positional's one name has none
+  std::vector<std::string>
+      names;  ///< with their dashes, short ones first; a positional has one, without dashes
   /// The placeholder of its value: FILE, DIR, SCENE, "eager|lazy|random:SEED"; empty: a flag.
   std::string value;
   std::string description;
   bool positional = false;
   bool required = false;
-  std::vector<std::string> needs{};     ///< without which it is refused
-  std::vector<std::string> excludes{};  ///< with which it is refused
+  std::vector<std::string> needs{};     ///< it is refused without these
+  std::vector<std::string> excludes{};  ///< it is refused together with these
 };
 
-/// A verb and those below it.
+/// A verb with the verbs below it.
 struct CommandVerb {
   std::string name;
   std::string description;
@@ -30,7 +30,7 @@ struct CommandVerb {
   std::vector<CommandVerb> verbs;
 };
 
-/// What the parser was told.
+/// The command line that the parser knows.
 CommandVerb command_tree(const CLI::App& app);
 
 /// The verbs that do something, each with its path from the top: "demo 3d".
@@ -40,8 +40,8 @@ struct CommandLeaf {
 };
 std::vector<CommandLeaf> leaves_of(const CommandVerb& top);
 
-/// The words of a value that is a choice, "host|simulated"; of an open one, "random:SEED", up to the colon.
-/// Empty for all other values.
+/// The words of a value that is a choice, "host|simulated"; a choice with an open part, "random:SEED", only up to the colon. Empty for all
+/// other values.
 std::vector<std::string> choices_of(const CommandOption& option);
 
 }  // namespace softcell::tool

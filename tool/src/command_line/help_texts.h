@@ -1,5 +1,5 @@
 #pragma once
-// What the command says of itself: the manual page and the completions of shells.
+// The documentation that the command generates of itself: the manual page and the completions of shells.
 
 #include <string>
 
@@ -10,14 +10,14 @@ namespace softcell::tool {
 /// softcell(1) in the macros of man(7). @param version  of softcell, for the footer.
 std::string manual_page(const CommandVerb& top, const std::string& version);
 
-/// A script that bash sources: completes verbs, options, the words of choices, files, folders, and the names
-/// that `softcell scenes` lists.
+/// A script for bash to source: it completes verbs, options, the words of choices, files, folders, and the names that `softcell scenes`
+/// lists.
 std::string bash_completion(const CommandVerb& top);
 
-/// The same for zsh, by its emulation of bash's completion.
+/// The same for zsh, which emulates bash's completion.
 std::string zsh_completion(const CommandVerb& top);
 
-/// The same for fish, with what the help says of each word.
+/// The same for fish, with the help text of each word.
 std::string fish_completion(const CommandVerb& top);
 
 }  // namespace softcell::tool

@@ -9,7 +9,7 @@
 namespace softcell::tool {
 namespace {
 
-/// Text as text: no escape, no macro at the start of a line, dashes that can be copied.
+/// Writes text literally: no escape, no macro at the start of a line, and dashes that can be copied.
 std::string plain(const std::string& text) {
   const bool like_a_macro = text.starts_with('.') || text.starts_with('\'');
   std::string result(like_a_macro ? "\\&" : "");
@@ -40,7 +40,7 @@ std::string option_heading(const CommandOption& option) {
   return text;
 }
 
-/// Which other options it must have beside it, and must not.
+/// The options that this option needs, and those that it excludes.
 std::string conditions(const CommandOption& option) {
   std::string text;
   for (const std::string& name : option.needs) text += fmt::format("; needs {}", name);

@@ -16,7 +16,7 @@ CLI::Option* accept_whole_number(CLI::Option* option, std::uint64_t least, std::
   return option->check([=](const std::string& text) -> std::string {
     std::uint64_t value = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    // The parser reads digits behind a 0 as octal ones.
+    // The parser would read digits after a 0 as octal.
     const bool whole = error == std::errc() && end == text.data() + text.size() && !text.starts_with('0');
     if (whole && value >= least && value <= most) return {};
     throw UsageError(

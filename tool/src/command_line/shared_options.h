@@ -1,5 +1,5 @@
 #pragma once
-// Options that several verbs have, and what is allowed behind them.
+// The options that several verbs have, and the values that they allow.
 
 #include <cstdint>
 #include <filesystem>
@@ -15,22 +15,22 @@ class Option;
 
 namespace softcell::tool {
 
-/// The most orders of DMA, random:1 to random:SEEDS, that a verb tries.
+/// The most orders of DMA that a verb tries, random:1 to random:SEEDS.
 inline constexpr std::uint64_t kMaxSeeds = 1'000'000'000;
 
 /// Makes the option accept only a whole number in decimal digits from `least`, which is above 0, to `most`.
 /// @return the option
 CLI::Option* accept_whole_number(CLI::Option* option, std::uint64_t least, std::uint64_t most);
 
-/// --dma; parse_dma() reads what it was given.
+/// Adds --dma; parse_dma() reads its value.
 void add_dma_option(CLI::App& verb, std::string& text);
 /// @throws UsageError
 dma::Schedule parse_dma(const std::string& text);
 
-/// --json, "-" for standard output. @param what  is written: "the table".
+/// Adds --json, whose value "-" is standard output. @param what  the option writes: "the table".
 void add_json_option(CLI::App& verb, std::optional<std::filesystem::path>& file, const std::string& what);
 
-/// --trace, likewise
+/// Adds --trace, likewise.
 void add_trace_option(CLI::App& verb, std::optional<std::filesystem::path>& file);
 
 }  // namespace softcell::tool

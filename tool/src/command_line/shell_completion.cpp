@@ -20,12 +20,12 @@ std::string offer_words(const std::string& words) {
   return fmt::format("COMPREPLY=($(compgen -W '{}' -- \"$word\"))", words);
 }
 
-/// The name of a file, which nothing else that is known of the value says.
+/// Whether the value is the name of a file. Nothing but the placeholder shows this.
 bool is_file(const CommandOption& option) {
   return option.value == "PROGRAM" || option.value.find("FILE") != std::string::npos;
 }
 
-/// How bash finds the words for a value.
+/// The shell commands with which bash finds the words for a value.
 std::string value_action(const CommandOption& option) {
   const auto choices = choices_of(option);
   if (!choices.empty()) return offer_words(joined(choices));
@@ -36,7 +36,7 @@ std::string value_action(const CommandOption& option) {
   return "COMPREPLY=()";
 }
 
-/// One arm of the case over the path: values of the option before, then what stands alone, then options.
+/// One arm of the case over the path: first the values of the option before, then positional values, then options.
 std::string leaf_arm(const CommandLeaf& leaf) {
   SC_ASSERT(leaf.verb != nullptr && !leaf.path.empty(), "no verb is at '{}'", leaf.path);
   std::string values, alone;
@@ -58,7 +58,7 @@ std::string leaf_arm(const CommandLeaf& leaf) {
   return text + fmt::format("      {} ;;\n", offer_words(joined(words)));
 }
 
-/// Arms for what is not a whole verb yet: the words that come next.
+/// Adds arms for paths that are not a whole verb yet: they offer the next words.
 void add_branch_arms(const CommandVerb& verb, const std::string& path, std::string& text) {
   if (verb.verbs.empty()) return;
   std::vector<std::string> next;
@@ -70,7 +70,7 @@ void add_branch_arms(const CommandVerb& verb, const std::string& path, std::stri
     add_branch_arms(below, path.empty() ? below.name : fmt::format("{} {}", path, below.name), text);
 }
 
-/// Patterns of the words that make a path longer, for the loop that reads it.
+/// Adds patterns of the words that extend a path, for the loop that reads it.
 void add_paths(const CommandVerb& verb, const std::string& path, std::vector<std::string>& patterns) {
   for (const CommandVerb& below : verb.verbs) {
     const std::string longer = path.empty() ? below.name : fmt::format("{} {}", path, below.name);
@@ -118,7 +118,7 @@ _softcell() {{
 complete -o filenames -F _softcell softcell
 )bash";
 
-/// In single quotes, as fish reads it.
+/// The text in single quotes, in fish's syntax.
 std::string fish_quoted(const std::string& text) {
   std::string quoted = "'";
   for (const char c : text) {
@@ -128,8 +128,8 @@ std::string fish_quoted(const std::string& text) {
   return quoted + "'";
 }
 
-/// The options of `complete` that say which words may stand for a value. Where the words of -a are made by a command, files may stand,
-/// too.
+/// The options of `complete` that state which words are allowed as a value. Where a command makes the words of -a, files are allowed as
+/// well.
 std::string fish_values(const CommandOption& option) {
   const auto choices = choices_of(option);
   if (!choices.empty()) return fmt::format(" -f -a {}", fish_quoted(joined(choices)));

@@ -17,7 +17,7 @@
 namespace softcell::tool {
 namespace {
 
-/// What --help says of the verb that the words lead to, from the top. @throws UsageError  there is none.
+/// The text of --help for the verb that the words lead to, from the top. @throws UsageError  there is no such verb.
 std::string help_of(const CLI::App& command, const std::vector<std::string>& words) {
   const CLI::App* app = &command;
   std::string path = command.get_name();

@@ -1,5 +1,5 @@
 #pragma once
-// softcell help, completion and man: the command line itself, for a reader and for a shell.
+// softcell help, completion and man: describe the command line, for a reader and for a shell.
 
 #include <memory>
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace softcell::tool {
 
-/// @param version  of the command, as the manual page says it
+/// @param version  of the command, for the manual page
 std::unique_ptr<Verb> shell_verbs(std::string version);
 
 }  // namespace softcell::tool

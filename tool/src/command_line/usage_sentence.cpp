@@ -15,7 +15,7 @@
 namespace softcell::tool {
 namespace {
 
-/// The verbs that were called, the first at the top.
+/// The verbs that were called, the topmost first.
 std::vector<const CLI::App*> called(const CLI::App& top) {
   std::vector<const CLI::App*> chain{&top};
   for (auto below = top.get_subcommands(); !below.empty(); below = chain.back()->get_subcommands())
@@ -32,14 +32,13 @@ std::string unknown_option(const std::string& verb, const CommandVerb& tree, con
       if (known_name.starts_with("--")) known.push_back(known_name);
     }
   }
-  // Every letter is near every other.
+  // In a short name every letter is similar to every other.
   const std::string_view nearest = name.size() > 2 ? base::nearest_name(name, known) : std::string_view();
   return fmt::format("{} has no option {}{}", verb, name,
                      nearest.empty() ? "" : fmt::format("; did you mean {}?", nearest));
 }
 
-/// The one that is most likely meant; empty when none is near. In a name of one or two letters every letter is
-/// near every other.
+/// The verb that is most likely meant; empty if none is similar. In a name of one or two letters every letter is similar to every other.
 std::string_view likely_verb(const std::string& argument, const std::vector<std::string_view>& known) {
   return argument.size() > 2 ? base::nearest_name(argument, known) : std::string_view();
 }
@@ -55,7 +54,7 @@ std::string one_argument_too_many(const std::string& verb, const CommandVerb& tr
       taken.empty() ? "nothing but options" : fmt::format("{} and options", fmt::join(taken, ", ")));
 }
 
-/// @param argument  that nobody takes.
+/// @param argument  the argument that no option or verb takes.
 std::string unexpected(const std::string& verb, const CLI::App& app, const std::string& argument) {
   const CommandVerb tree = command_tree(app);
   if (argument.starts_with('-')) return unknown_option(verb, tree, argument);
@@ -67,7 +66,7 @@ std::string needs_value(const CLI::Option& option) {
   return fmt::format("{} needs a value: {}", option.get_name(), option.get_type_name());
 }
 
-/// The option that the parser names, with more values or fewer than it takes; empty when it names none.
+/// The message about the option that the parser names, if it has too many or too few values; empty if the parser names none.
 std::string wrong_count(const CLI::App& app, const std::string& what) {
   for (const CLI::Option* option : app.get_options()) {
     const std::string name = option->get_name();
@@ -102,7 +101,7 @@ std::string usage_sentence(const CLI::App& top, const CLI::ParseError& error) {
   const CLI::App& app = *called(top).back();
   const std::string verb = called_verb(top), what = error.what();
   const bool misses = dynamic_cast<const CLI::RequiredError*>(&error) != nullptr;
-  // A slip in an option's name may be why a required one is missing.
+  // A misspelled option may be the reason why a required one is missing.
   if (misses || dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) {
     if (const auto left = top.remaining(true); !left.empty()) return unexpected(verb, app, left.front());
   }

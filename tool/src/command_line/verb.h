@@ -1,5 +1,5 @@
 #pragma once
-// A verb of the command, as whoever does it adds it to the command line.
+// The interface by which a verb adds itself to the command line.
 
 #include <functional>
 #include <memory>
@@ -15,7 +15,7 @@ namespace softcell::tool {
 /// @throws UsageError (exit status 2) or another std::exception (exit status 1), one sentence either way.
 using Call = std::function<int()>;
 
-/// One verb, or several with one above them. It keeps the values of its options: it must outlive the parser.
+/// One verb, or several below a common one. It keeps the values of its options, so it must outlive the parser.
 class Verb {
  public:
   Verb() = default;
@@ -24,7 +24,7 @@ class Verb {
   Verb& operator=(const Verb&) = delete;
 
   /// Adds the verb to the parser.
-  /// @param chosen  becomes the verb's call when that is what the command line says; outlives this
+  /// @param chosen  becomes the verb's call if the command line names the verb; must outlive this object
   virtual void add_to(CLI::App& command, Call& chosen) = 0;
 };
 

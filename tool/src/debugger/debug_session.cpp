@@ -55,7 +55,7 @@ std::optional<DebugStop> DebugSession::stop_at(int spe, std::uint32_t pc) {
       if (count_ == goal_.number) return DebugStop{.kind = DebugStop::kStep, .spe = spe};
       return std::nullopt;
     case Goal::kLastStopBefore:
-      // Backwards, an access stops before its instruction: on_access() has seen to that.
+      // When going back, an access stops the run before its instruction; on_access() does that.
       if (count_ >= goal_.number) return DebugStop{.kind = DebugStop::kStep, .spe = spe};
       if (breakpoints_[pc / 4]) {
         best_ = {.kind = DebugStop::kBreakpoint, .spe = spe};
@@ -115,7 +115,7 @@ void DebugSession::begin(const Goal& goal) {
   });
 }
 
-/// The run ends wherever it is.
+/// Ends the run wherever it is.
 void DebugSession::abandon() {
   {
     const std::lock_guard lock(mutex_);
@@ -175,7 +175,7 @@ DebugStop DebugSession::step_back(const Interrupted& interrupted) {
   return stop;
 }
 
-/// One run finds out where, another goes there.
+/// One run finds the place, and another one goes there.
 DebugStop DebugSession::go_back(const Interrupted& interrupted) {
   best_.reset();
   begin({.kind = Goal::kLastStopBefore, .number = count_});
@@ -215,7 +215,7 @@ void DebugSession::write_memory(int spe, std::uint32_t address, const std::vecto
   edit({count_, spe, address, bytes});
 }
 
-/// What was written later belongs to a future that there is no more.
+/// Drops what was written later: it belongs to a future that no longer exists.
 void DebugSession::edit(Edit made) {
   std::erase_if(edits_, [&](const Edit& other) { return other.at > made.at; });
   apply(made);

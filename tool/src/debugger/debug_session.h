@@ -1,5 +1,5 @@
 #pragma once
-// A run that stops where a debugger wants it, and goes backwards by running again.
+// A run that a debugger can stop, and that goes backwards by running again.
 
 #include <array>
 #include <atomic>
@@ -19,7 +19,7 @@
 
 namespace softcell::tool {
 
-/// Which accesses to some bytes of each local store stop the run.
+/// Accesses that stop the run: those to some bytes of each local store.
 struct Watchpoint {
   enum Kind : std::uint8_t { kStores, kLoads, kBoth };
   Kind kind = kStores;
@@ -27,36 +27,36 @@ struct Watchpoint {
   bool operator==(const Watchpoint&) const = default;
 };
 
-/// Why the SPEs stand still.
+/// The reason why the SPEs stand still.
 struct DebugStop {
   enum Kind : std::uint8_t { kStep, kBreakpoint, kWatchpoint, kInterrupted, kBeginning, kEnded };
   Kind kind = kStep;
-  int spe = 0;                 ///< whose instruction is next
+  int spe = 0;                 ///< the SPE whose instruction is next
   Watchpoint watchpoint = {};  ///< of kWatchpoint
 };
 
-/// SPEs take turns by the schedule's seed and the clock is simulated, so the program does the same in every run: an
-/// instruction has a number, and going back is running again up to a smaller one. What the debugger has written to
-/// registers and local stores is written again at its place. One thread uses it, besides the SPEs'.
+/// SPEs take turns by the schedule's seed and the clock is simulated, so the program does the same in every run: each instruction has a
+/// number, and going back means running again up to a smaller number. What the debugger has written to registers and local stores is
+/// written again at the same instruction. One thread uses the session, besides those of the SPEs.
 class DebugSession final : private ls_sim::Debugger {
  public:
-  /// Called while SPEs run; true stops them.
+  /// Called while SPEs run; if it returns true, they stop.
   using Interrupted = std::function<bool()>;
 
-  /// @param image, task, settings  outlive it. The image is a program built for the SPU.
+  /// @param image, task, settings  must outlive this object. The image is a program built for the SPU.
   DebugSession(const ls_sim::KernelImage& image, const KernelTask& task, const RunSettings& settings);
   ~DebugSession() override { abandon(); }
   DebugSession(const DebugSession&) = delete;
   DebugSession& operator=(const DebugSession&) = delete;
 
-  /// Begins, and stops before the first instruction.
+  /// Starts the run, and stops before the first instruction.
   DebugStop start();
 
   // @pre the last stop was not kEnded
   DebugStop go_on(const Interrupted& interrupted);
-  /// One instruction of this SPE; others may execute some meanwhile.
+  /// Executes one instruction of this SPE; other SPEs may execute some meanwhile.
   DebugStop step(int spe, const Interrupted& interrupted);
-  /// To the last stop before this place; without any, to the beginning.
+  /// Goes back to the last stop before this instruction; if there is none, to the beginning.
   DebugStop go_back(const Interrupted& interrupted);
   DebugStop step_back(const Interrupted& interrupted);
 
@@ -66,19 +66,19 @@ class DebugSession final : private ls_sim::Debugger {
   void set_breakpoint(std::uint32_t address, bool is_set) { breakpoints_[address / 4] = is_set; }
   void set_watchpoint(const Watchpoint& watchpoint, bool is_set);
 
-  // While it stands.
+  // While the run stands still:
   int spes() const { return task_.spes; }
-  /// Of an SPE that runs: false before its first instruction and after its end.
+  /// Whether an SPE runs: false before its first instruction and after its end.
   bool is_running(int spe) const { return states_[index(spe)] != nullptr; }
-  /// The instruction that the SPE is at: the next, or one that waits.
+  /// The address of the instruction that the SPE is at: the next one, or one that waits.
   std::uint32_t position(int spe) const { return positions_[index(spe)]; }
   ls_sim::RegisterBytes read_register(int spe, int number) const;
-  /// All do nothing for an SPE that does not run.
+  /// These functions do nothing for an SPE that does not run.
   void write_register(int spe, int number, const ls_sim::RegisterBytes& value);
   /// @pre the range lies in the local store
   std::vector<std::byte> read_memory(int spe, std::uint32_t address, std::uint32_t bytes) const;
   void write_memory(int spe, std::uint32_t address, const std::vector<std::byte>& bytes);
-  /// The number of the next instruction, the first being 1.
+  /// The number of the next instruction; the first one has number 1.
   std::uint64_t instruction() const { return count_; }
 
   /// After kEnded.
@@ -91,7 +91,7 @@ class DebugSession final : private ls_sim::Debugger {
     std::variant<int, std::uint32_t> where;  ///< register, or address
     std::vector<std::byte> bytes;
   };
-  /// What the SPEs' threads look for.
+  /// The aim of the threads of SPEs.
   struct Goal {
     enum Kind : std::uint8_t { kStops, kStepOf, kNumber, kLastStopBefore, kEnd };
     Kind kind = kStops;
@@ -101,7 +101,7 @@ class DebugSession final : private ls_sim::Debugger {
 
   static std::size_t index(int spe) { return static_cast<std::size_t>(spe); }
 
-  // ls_sim::Debugger, by the threads of SPEs, one at a time.
+  // ls_sim::Debugger; the threads of SPEs call these, one at a time.
   void on_begin(int spe, ls_sim::DebuggedSpe& state) override { states_[index(spe)] = &state; }
   void on_end(int spe) override { states_[index(spe)] = nullptr; }
   bool on_instruction(int spe, dma::LocalStoreAddress pc) override;
@@ -122,20 +122,20 @@ class DebugSession final : private ls_sim::Debugger {
   const KernelTask& task_;
   RunSettings settings_;
 
-  // Of the SPEs' threads while they run, and of the session's while they stand.
+  // The SPEs' threads use these while they run, and the session's thread while they stand still.
   std::array<ls_sim::DebuggedSpe*, dma::kSpeCount> states_{};
   std::array<std::uint32_t, dma::kSpeCount> positions_{};
   std::uint64_t count_ = 0;
   Goal goal_;
-  std::optional<Watchpoint> accessed_;  ///< by the instruction before
-  std::optional<DebugStop> best_;       ///< of kLastStopBefore
+  std::optional<Watchpoint> accessed_;  ///< by the previous instruction
+  std::optional<DebugStop> best_;       ///< for kLastStopBefore
   std::uint64_t best_number_ = 0;
   std::vector<bool> breakpoints_ = std::vector<bool>(dma::kLocalStoreBytes / 4);
   std::vector<Watchpoint> watchpoints_;
   std::vector<Edit> edits_;  ///< in order
 
   std::atomic<bool> abandoned_{false}, interrupt_{false};
-  std::mutex mutex_;  // guards what follows
+  std::mutex mutex_;  // guards the members below
   std::condition_variable changed_;
   enum class State : std::uint8_t { kRunning, kStanding, kEnded };
   State state_ = State::kEnded;

@@ -18,7 +18,7 @@ namespace softcell::tool {
 namespace {
 
 constexpr int kMomentMilliseconds = 50;
-constexpr std::size_t kMostBytes = 1 << 20;  // of what has come and is no packet yet
+constexpr std::size_t kMostBytes = 1 << 20;  // of received bytes that are no complete packet yet
 constexpr char kInterrupt = 3, kEscape = '}';
 constexpr char kEscapeBit = 0x20;
 
@@ -58,7 +58,7 @@ GdbConnection::GdbConnection(std::uint16_t port) : listener_(socket(AF_INET, SOC
   sockaddr_in address{};
   address.sin_family = AF_INET;
   address.sin_port = htons(port);
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);  // nobody from outside debugs here
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);  // only this host may connect
   socklen_t bytes = sizeof address;
   if (listener_ < 0 || setsockopt(listener_, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on) != 0 ||
       bind(listener_, reinterpret_cast<const sockaddr*>(&address), bytes) != 0 || listen(listener_, 1) != 0 ||
@@ -97,7 +97,7 @@ bool GdbConnection::read_some(int milliseconds) {
   return true;
 }
 
-/// Acknowledgements and broken packets are skipped; of the latter the debugger hears, and sends them again.
+/// Skips acknowledgements and broken packets. It reports broken packets to the debugger, which sends them again.
 std::optional<std::string> GdbConnection::take_packet() {
   for (;;) {
     const std::size_t begin = received_.find('$');
@@ -123,7 +123,7 @@ std::optional<std::string> GdbConnection::receive() {
 bool GdbConnection::take_interrupt() {
   read_some(0);
   const std::size_t at = received_.find(kInterrupt);
-  if (at == std::string::npos) return is_closed_;  // nobody is there to wait for
+  if (at == std::string::npos) return is_closed_;  // there is nobody to wait for
   received_.erase(at, 1);
   return true;
 }

@@ -1,5 +1,5 @@
 #pragma once
-// Packets of GDB's remote protocol over a socket.
+// Sends and receives packets of GDB's remote protocol over a socket.
 
 #include <cstdint>
 #include <optional>
@@ -11,7 +11,7 @@ namespace softcell::tool {
 /// A socket of this host that waits for one debugger. [GDB manual, remote protocol] documented
 class GdbConnection {
  public:
-  /// @param port  0: any that is free
+  /// @param port  0: any free port
   /// @throws std::runtime_error  the port cannot be used.
   explicit GdbConnection(std::uint16_t port);
   ~GdbConnection();
@@ -20,17 +20,17 @@ class GdbConnection {
 
   std::uint16_t port() const { return port_; }
 
-  /// Waits a moment for the debugger. @return  whether it is there.
+  /// Waits a short time for the debugger. @return  whether it has connected.
   bool accept();
 
-  /// Waits a moment for the next packet and acknowledges it.
-  /// @return  its contents, unescaped; nothing when none has come yet.
+  /// Waits a short time for the next packet and acknowledges it.
+  /// @return  its contents, unescaped; none if no packet has come yet.
   std::optional<std::string> receive();
-  /// @return  whether the debugger has asked for a stop, by its byte 3, since the last call.
+  /// @return  whether the debugger has sent its byte 3, which asks for a stop, since the last call.
   bool take_interrupt();
   void send(std::string_view contents);
 
-  /// The debugger wants no acknowledgements any more.
+  /// Call it when the debugger no longer wants acknowledgements.
   void stop_acknowledging() { acknowledges_ = false; }
   bool is_closed() const { return is_closed_; }
 
@@ -46,7 +46,7 @@ class GdbConnection {
 
 // Numbers as the protocol writes them.
 std::string hexadecimal_of(std::string_view bytes);
-/// @return  nothing if the text is no sequence of pairs of hexadecimal digits.
+/// @return  none if the text is no sequence of pairs of hexadecimal digits.
 std::optional<std::string> bytes_of(std::string_view hexadecimal);
 
 }  // namespace softcell::tool

@@ -13,11 +13,11 @@ namespace {
 
 constexpr int kNumberRegister = ls_sim::kSpuRegisters,
               kCounterRegister = kNumberRegister + 1;  // [GDB] second-hand
-constexpr std::uint32_t kMostMemoryBytes = 4096;       // of one packet
+constexpr std::uint32_t kMostMemoryBytes = 4096;       // in one packet
 constexpr const char* kOk = "OK";
 constexpr const char* kBadRequest = "E01";
 constexpr const char* kNotPossible = "E02";
-constexpr const char* kUnknown = "";  // what the protocol answers to anything that is not there
+constexpr const char* kUnknown = "";  // the protocol's answer to anything that is not supported
 
 std::optional<std::uint32_t> number_of(std::string_view text, int base = 16) {
   std::uint32_t value = 0;
@@ -26,7 +26,7 @@ std::optional<std::uint32_t> number_of(std::string_view text, int base = 16) {
   return value;
 }
 
-/// "ADDRESS,LENGTH" within a local store.
+/// Parses "ADDRESS,LENGTH" within a local store.
 std::optional<std::pair<std::uint32_t, std::uint32_t>> range_of(std::string_view text) {
   const std::size_t comma = text.find(',');
   if (comma == std::string_view::npos) return std::nullopt;
@@ -128,7 +128,7 @@ std::string GdbServer::answer(const std::string& packet) {
       return change_point(packet);
     case 'c':
     case 's':
-      return rest.empty() ? resume(packet) : kNotPossible;  // from elsewhere: a program counter cannot be set
+      return rest.empty() ? resume(packet) : kNotPossible;  // a program counter cannot be set
     case 'b':
       return packet == "bs" || packet == "bc" ? resume(packet) : kUnknown;
     case 'D':
@@ -296,7 +296,7 @@ std::string GdbServer::resume(std::string_view action) {
 std::string GdbServer::report(const DebugStop& stop) {
   constexpr int kTrapSignal = 5, kInterruptSignal = 2;  // signals
   if (stop.kind == DebugStop::kEnded) {
-    // The first that failed speaks for all.
+    // The first SPE that has failed determines the answer.
     for (const SpeRun& spe : session_.result().spes) {
       if (spe.result.fault) return "X06";
       if (!spe.result.ended_normally() || spe.result.status() != 0)

@@ -1,5 +1,5 @@
 #pragma once
-// GDB's remote protocol for programs on SPEs.
+// Serves GDB's remote protocol for programs on SPEs.
 
 #include <optional>
 #include <string>
@@ -10,20 +10,20 @@
 
 namespace softcell::tool {
 
-/// Thread n of the debugger is SPE n - 1. Registers are those of GDB's port to the SPU: 128 general ones, then the SPE's
-/// number and the program counter. Addresses are those of the local store of the thread that is selected.
+/// The debugger's thread n is SPE n - 1. Registers are those of GDB's port to the SPU: 128 general ones, then the SPE's number and the
+/// program counter. Addresses are those of the selected thread's local store.
 class GdbServer {
  public:
-  /// Both outlive it.
+  /// @param connection, session  must outlive this object
   GdbServer(GdbConnection& connection, DebugSession& session) : connection_(connection), session_(session) {}
 
   /// How the debugger has left.
   enum class End : std::uint8_t {
-    kDetached,  ///< the program is to go on without it
-    kKilled,    ///< or not at all; also when the connection broke
+    kDetached,  ///< the program goes on without it
+    kKilled,    ///< the program ends; also if the connection broke
     kEnded,     ///< after the program's end
   };
-  /// Serves until the debugger leaves. @param interrupted  as DebugSession's; true ends the service.
+  /// Serves until the debugger leaves. @param interrupted  as for DebugSession; true ends the service.
   End serve(const DebugSession::Interrupted& interrupted);
 
  private:
@@ -47,7 +47,7 @@ class GdbServer {
   DebugSession& session_;
   DebugSession::Interrupted wants_end_;
   DebugStop stop_;
-  int spe_ = 0;  ///< that is selected
+  int spe_ = 0;  ///< the selected SPE
   std::optional<End> end_;
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// What a user makes of a scene in a window, in either dimension.
+// Applies a change that a user makes to a scene in a window, in either dimension.
 
 #include <algorithm>
 #include <filesystem>
@@ -13,7 +13,7 @@
 
 namespace softcell::tool {
 
-/// @param new_body  () -> where a body comes that is added
+/// @param new_body  () -> size, stiffness and place of a body that is added
 /// @throws std::runtime_error  one sentence
 template <int Dimension, class SceneOf, class Place>
 SceneOf changed_scene(const SceneOf& scene, const demos::PresentScene<Dimension>& now,
@@ -48,7 +48,7 @@ inline std::vector<demos::OwnScene> scene_files_here(int dimension) {
   return own;
 }
 
-/// A script would be run in a child process, which a program with threads cannot have.
+/// Refuses a scene in Lua: its script would run in a child process, which a program with threads cannot make.
 /// @throws std::runtime_error  the file is in Lua
 inline void refuse_lua(const std::filesystem::path& scene_file) {
   if (scene_file.extension() == ".lua")

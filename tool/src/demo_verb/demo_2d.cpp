@@ -1,4 +1,4 @@
-// softcell demo 2d: soft bodies in a Box2D world.
+// softcell demo 2d: runs soft bodies in a Box2D world.
 
 #include <filesystem>
 #include <memory>
@@ -82,8 +82,8 @@ class Demo2d final : public demos::SceneDemo<Types2d> {
     return {simulation().moment(), settings_of_bodies(), simulation().substeps()};
   }
 
-  /// At the point of the window, a quarter of the picture's height; where that is in a wall or another body, as near as it is free
-  /// on the way to the picture's middle.
+  /// Places the body at the point of the window, with a quarter of the picture's height. If that is in a wall or another body, takes the
+  /// first free place on the way to the picture's middle.
   demos::NewBody<2> new_body(const demos::SceneChange& change) const {
     constexpr float kShareOfHeight = 0.25f;
     demos::NewBody<2> body;

@@ -1,4 +1,4 @@
-// softcell demo 3d: soft bodies in a Bullet world.
+// softcell demo 3d: runs soft bodies in a Bullet world.
 
 #include <fmt/format.h>
 
@@ -114,7 +114,7 @@ class Demo3d final : public demos::SceneDemo<Types3d> {
     return {simulation().moment(), settings_of_bodies(), simulation().substeps()};
   }
 
-  /// In front of what one sees at the point of the window, and above it; a quarter of the picture's height.
+  /// Places the body in front of what one sees at the point of the window, and above it, with a quarter of the picture's height.
   demos::NewBody<3> new_body(const demos::SceneChange& change) const {
     constexpr float kShareOfHeight = 0.25f, kLeastSide = 0.02f;
     const render::Camera camera = eye(look());
@@ -137,7 +137,7 @@ class Demo3d final : public demos::SceneDemo<Types3d> {
     return body;
   }
 
-  /// Upwards until there is nothing where the body begins; as it is if there is no such place.
+  /// Moves the body upwards to a free place; leaves it where it is if there is none.
   void rise_to_room(demos::NewBody<3>& body) const {
     constexpr int kTries = 64;
     constexpr float kStep = 0.25f;  // of the body's side
@@ -152,13 +152,13 @@ class Demo3d final : public demos::SceneDemo<Types3d> {
 
   bool shows_contacts() const { return static_cast<demos::View>(look().view) == demos::View::kContacts; }
 
-  /// What the mouse takes along a ray. The point of a contact, where these are shown, is looked at and not taken.
+  /// What the mouse takes along a ray. A click on the point of a contact, while contacts are shown, selects the contact and takes nothing.
   std::optional<demos::InputEvent<3>> take(const demos::Ray& ray) {
     contact_ = shows_contacts() ? contact_at(ray) : std::nullopt;
     return contact_ ? std::nullopt : simulation().touch(ray);
   }
   std::optional<ppu::Contact> contact_at(const demos::Ray& ray) const {
-    constexpr float kShareOfHeight = 0.012f;  // of the picture: so near to its point the mouse must be
+    constexpr float kShareOfHeight = 0.012f;  // of the picture: the mouse must be this near to the point
     float least = kShareOfHeight * 2 * scene().camera.tan_half_fov_y;
     std::optional<ppu::Contact> nearest;
     for (const ppu::Contact& contact : simulation().shown_contacts()) {
@@ -168,7 +168,7 @@ class Demo3d final : public demos::SceneDemo<Types3d> {
     }
     return nearest;
   }
-  /// The contact of the same two bodies that is nearest to where it was; without one, it presses no longer.
+  /// Finds the contact of the same two bodies that is nearest to its old place; if there is none, its impulse is 0.
   void follow_contact() {
     if (contact_) {
       const ppu::Contact before = *contact_;
@@ -193,13 +193,13 @@ class Demo3d final : public demos::SceneDemo<Types3d> {
     return demos::kept_outside(demos::seen_from(scene(), look, simulation().shown_tilt()), boxes);
   }
 
-  /// The camera goes as far as the body that was held last, or the first one, has gone since the beginning.
+  /// Moves the camera as far as the body that was held last, or else the first body, has moved since the beginning.
   void follow_body() {
     for (const demos::InputEvent<3>& event : simulation().last_events())
       if (event.action == demos::Action::kHold && event.body < simulation().soft_bodies())
         followed_ = event.body;
     if (!input().look().follows || simulation().soft_bodies() == 0) return;
-    if (followed_ >= simulation().soft_bodies()) followed_ = 0;  // it was a piece, and the scene was reset
+    if (followed_ >= simulation().soft_bodies()) followed_ = 0;  // it was a piece that a reset has removed
     const auto& body = simulation().soft_body(followed_);
     const demos::SoftBodyPlacement& placement = scene().soft_bodies[simulation().source(followed_)];
     const ppu::Bounds<3> rest = ppu::bounds(placement.mesh), now = body.bounds();
@@ -209,10 +209,10 @@ class Demo3d final : public demos::SceneDemo<Types3d> {
 
   const Demo3dOptions& options_;
   std::size_t followed_ = 0;             // number of a soft body
-  std::optional<ppu::Contact> contact_;  // that the user has clicked
+  std::optional<ppu::Contact> contact_;  // the contact that the user has clicked
 };
 
-/// What of the models is not shown; it does not keep the demo from running.
+/// Prints which parts of the models are not shown; the demo runs all the same.
 void print_notes(const std::vector<std::string>& notes) {
   for (const std::string& note : notes) fmt::print(stderr, "softcell: {}\n", base::one_line(note));
 }

@@ -1,5 +1,5 @@
 #pragma once
-// What the command line asks of a demo.
+// The options of a demo from the command line.
 
 #include <filesystem>
 #include <optional>
@@ -16,7 +16,7 @@
 
 namespace softcell::tool {
 
-/// What the demos have in common.
+/// The options that the demos share.
 struct DemoOptions : demos::PictureOptions, demos::RecordingFiles {
   bool headless = false;
   std::optional<std::string> scene;  ///< name or file
@@ -30,22 +30,22 @@ struct DemoOptions : demos::PictureOptions, demos::RecordingFiles {
   dma::Schedule schedule{};
   bool checked = false;  ///< run instrumented kernels
   std::optional<std::filesystem::path> trace;
-  std::string view_name = {};          ///< what --view says
+  std::string view_name = {};          ///< the value of --view
   std::optional<float> ui_scale = {};  ///< of text and menus in a window
-  bool quiet = false;                  ///< nothing but what goes wrong, not even progress on a terminal
+  bool quiet = false;                  ///< prints errors only, not even progress on a terminal
 };
 
-/// The scene's default: arena, or drop when a mesh is given.
+/// The default scene is arena, or drop if a mesh is given.
 struct Demo3dOptions : DemoOptions {
   demos::OwnModelOptions model;
   demos::View view = demos::View::kMesh;
   demos::Skin skin = demos::Skin::kSpe;
 };
 
-/// The scene's default: man, or picture when a picture is given.
+/// The default scene is man, or picture if a picture is given.
 struct Demo2dOptions : DemoOptions {
   std::optional<std::filesystem::path> image;  ///< the user's own picture
-  int cells = demos::kCellsAlongPicture;       ///< along its silhouette's longest side
+  int cells = demos::kCellsAlongPicture;       ///< along the longest side of its silhouette
   demos::View2d view = demos::View2d::kFilled;
 };
 

@@ -31,12 +31,12 @@ Summary summarize(std::vector<double> samples) {
   return {sum(samples) / static_cast<double>(samples.size()), rank(0.5), rank(0.99), samples.back()};
 }
 
-/// Whether the run draws each frame before it simulates the next. A window is drawn by a thread of its own.
+/// Whether the run draws each frame before it simulates the next. In a window, a separate thread draws.
 bool waits_for_pictures(const DemoOptions& options) {
   return options.headless && (options.out || options.video);
 }
 
-/// What the frame loop spent its time on, and the frames a second that this makes.
+/// Fills in the parts on which the frame loop spent its time, and the frames per second that result.
 void fill_in_time(const DemoOptions& options, const demos::RunRecord& record, DemoFigures& figures) {
   SC_ASSERT(record.physics_ms.size() == static_cast<std::size_t>(record.frames),
             "the times of {} frames of {}", record.physics_ms.size(), record.frames);
@@ -92,7 +92,7 @@ const char* engine_name(const DemoOptions& options) {
   return options.machine == ls_sim::Machine::kSpu ? "interpreter" : "native";
 }
 
-/// Of the whole run, of which a frame is a part.
+/// Sums over the whole run, divided by its frames.
 FiguresOnPs3 figures_on_ps3(const demos::RunRecord& record, const ls_sim::Timing& timing) {
   FiguresOnPs3 figures{.ms = summarize(record.ps3_ms), .kernels = {}};
   const double frames = std::max(record.frames, 1);
@@ -120,7 +120,7 @@ nlohmann::ordered_json to_json(const FiguresOnPs3& figures) {
           {"kernels", std::move(kernels)}};
 }
 
-/// Beside what the report of 2008 has: there the PPU did the matching, and the SPEs the skinning of three dimensions.
+/// For comparison with the report of 2008, in which the PPU did the matching, and the SPEs the skinning in three dimensions.
 void print_on_ps3(const FiguresOnPs3& f, std::size_t spes) {
   fmt::print(
       "on a PS3:  {:.2f} ms a frame of {} (99 % of frames: {:.2f}), {:.1f} % of 1/60 s, the PPU's time not "

@@ -14,34 +14,33 @@
 
 namespace softcell::tool {
 
-/// Mean and order statistics of a series of measurements, in the unit of the measurements; all 0 for an empty
-/// series.
+/// Mean and order statistics of a series of measurements, in the unit of the measurements; all are 0 for an empty series.
 struct Summary {
   double mean = 0, p50 = 0, p99 = 0, max = 0;
 };
 
-/// A part of what a run did, and its share of the time.
+/// A part of a run and its share of the time.
 struct TimeShare {
-  std::string_view key;    ///< in JSON: "physics"
-  std::string_view words;  ///< "contacts and rigid bodies"
+  std::string_view key;    ///< name in JSON: "physics"
+  std::string_view words;  ///< name for the reader: "contacts and rigid bodies"
   double share = 0;        ///< 0 to 1
 };
 
-/// What the SPEs' work takes on a PS3, by the model of time.
+/// What the work of the SPEs takes on a PS3, by the timing model.
 struct FiguresOnPs3 {
-  /// A kernel's jobs.
+  /// The jobs of a kernel.
   struct Kernel {
     std::string name;
-    double ms = 0;    ///< a frame, of all SPEs together
-    double jobs = 0;  ///< a frame
+    double ms = 0;    ///< per frame, of all SPEs together
+    double jobs = 0;  ///< per frame
   };
   Summary ms;                   ///< of a frame: from its first job to its last, without the PPU's time
-  double busy = 0;              ///< share of that in which an SPE runs jobs, waits included
-  double waits = 0;             ///< share of the jobs' time in which they wait for transfers
-  std::vector<Kernel> kernels;  ///< the one that takes most first
+  double busy = 0;              ///< share of that time in which an SPE runs jobs, waits included
+  double waits = 0;             ///< share of the jobs' time that they spend waiting for transfers
+  std::vector<Kernel> kernels;  ///< the one that takes most time first
 };
 
-/// Everything that either form needs.
+/// The figures that both forms need.
 struct DemoFigures {
   std::string scene, dma, engine, contacts;
   int frames = 0;
@@ -52,11 +51,11 @@ struct DemoFigures {
   double ppu_share = 0;  ///< of 1/60 s
   Summary picture_ms;
   std::size_t pictures = 0;
-  std::uint64_t upload_bytes = 0;  ///< of a picture
+  std::uint64_t upload_bytes = 0;  ///< per picture
 
-  double simulated_fps = 0;            ///< frames a second without pictures
-  double fps = 0;                      ///< and with them, where each frame has one and waits for it
-  std::vector<TimeShare> time_shares;  ///< of what fps counts; the largest, which binds, first
+  double simulated_fps = 0;            ///< frames per second without pictures
+  double fps = 0;                      ///< the same with pictures, if each frame waits for one
+  std::vector<TimeShare> time_shares;  ///< of what fps counts; the largest, which limits fps, first
   double seconds = 0;                  ///< of the frame loop
 
   std::vector<double> spe_busy;  ///< share of `seconds`, of each SPE
@@ -65,7 +64,7 @@ struct DemoFigures {
   std::optional<FiguresOnPs3> on_ps3;  ///< none: nothing was timed
 };
 
-/// @param demo    stopped
+/// @param demo    must be stopped
 /// @param timing  null: nothing was timed
 DemoFigures demo_figures(const DemoOptions& options, const demos::Demo& demo, const demos::RunRecord& record,
                          const ls_sim::Timing* timing);
@@ -73,7 +72,7 @@ DemoFigures demo_figures(const DemoOptions& options, const demos::Demo& demo, co
 /// What --json writes; docs/guide/playing.md lists it.
 nlohmann::ordered_json to_json(const DemoFigures& figures);
 
-/// Prints the figures in a few lines, the first of which says what binds.
+/// Prints the figures in a few lines; the first one says what limits the speed.
 void print_summary(const DemoFigures& figures, const DemoOptions& options);
 
 }  // namespace softcell::tool

@@ -69,7 +69,7 @@ demos::Skin parse_skin(const std::string& text) {
   throw UsageError("--skin " + text + ": give spe or gpu");
 }
 
-/// @return  whether it is z
+/// @return  whether the text is "z"
 bool parse_up(const std::string& text) {
   if (text != "y" && text != "z") throw UsageError("--up " + text + ": give y or z");
   return text == "z";
@@ -160,7 +160,7 @@ class DemoVerbs final : public Verb {
     });
   }
 
-  /// What all demos have.
+  /// Adds the options that all demos have.
   void add_demo_options(CLI::App& d, DemoOptions& options, const std::string& default_scene) {
     d.add_flag("--headless", options.headless, "Run without a window, as fast as it goes");
     d.add_option("--contacts", contacts_,

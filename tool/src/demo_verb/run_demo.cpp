@@ -32,7 +32,7 @@
 namespace softcell::tool {
 namespace {
 
-/// How far an interrupted run has come, and what there is of it.
+/// Prints how far an interrupted run has come, and which output exists.
 void print_interrupted(const DemoOptions& options, const demos::RunRecord& record) {
   if (record.frames == 0) {
     fmt::print(stderr, "softcell: interrupted before the first frame\n");
@@ -49,7 +49,7 @@ void print_interrupted(const DemoOptions& options, const demos::RunRecord& recor
                  : "");
 }
 
-/// How pictures are made, for their files. Folders and files of this computer are nobody else's business.
+/// How pictures are made, for their files. Folders and files of this computer are left out, since they concern nobody else.
 std::vector<render::PngText> picture_texts(const DemoOptions& options, std::string_view verb,
                                            const std::string& scene) {
   std::string how = fmt::format(
@@ -95,12 +95,12 @@ demos::Run run_headless(const DemoOptions& options, std::string_view verb, const
       bar.show(static_cast<std::size_t>(frame) + 1);
     }
     if (!pictures.every_frame() && !guard.interrupted())
-      pictures.add(std::max(record.frames - 1, 0));  // a replay may have none
+      pictures.add(std::max(record.frames - 1, 0));  // a replay may have no frames
     demo.stop();
   });
   record.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   record.interrupted = guard.interrupted();
-  if (record.frames > 0) pictures.finish();  // of an interrupted run the film has the frames so far
+  if (record.frames > 0) pictures.finish();  // the film of an interrupted run has the frames so far
   if (record.interrupted) return run;
   record.picture_ms = pictures.milliseconds();
   record.upload_bytes = pictures.upload_bytes();
@@ -108,7 +108,7 @@ demos::Run run_headless(const DemoOptions& options, std::string_view verb, const
   return run;
 }
 
-/// What can be said of a film and its pictures before they are made.
+/// Checks what can be checked of a film and its pictures before they are made.
 void check_pictures(const DemoOptions& options) {
   if (options.supersample > 1) {
     if (!options.headless)
@@ -133,7 +133,7 @@ void check_pictures(const DemoOptions& options) {
   }
 }
 
-/// No output takes another's place or that of what the demo reads.
+/// Checks that no output replaces another one or a file that the demo reads.
 void check_files(const DemoOptions& options) {
   std::vector<NamedFile> written = written_files(options);
   check_distinct(written);
@@ -141,18 +141,18 @@ void check_files(const DemoOptions& options) {
     refuse_standard_output(file);
   if (options.scene && demos::is_scene_file(*options.scene))
     check_kept({{"the scene", *options.scene}}, written);
-  // A recording may take the place of the one that is replayed.
+  // A recording may replace the one that is replayed.
   std::erase_if(written, [](const NamedFile& file) { return file.name == "--record"; });
   check_kept({{"--replay", options.replay}}, written);
 }
 
-/// The file beside a saved scene.
+/// The state file beside a saved scene.
 std::optional<std::filesystem::path> state_of(std::optional<std::filesystem::path> scene) {
   if (scene) scene->replace_extension(".state");
   return scene;
 }
 
-/// A scene that cannot be written is no surprise at the end of a long run.
+/// Refuses a scene that cannot be written now, not at the end of a long run.
 void check_saved_scene(const DemoOptions& options) {
   if (!options.save_scene) return;
   refuse_standard_output({"--save-scene", options.save_scene});
@@ -186,19 +186,19 @@ int run_demo(const DemoOptions& options, std::string_view verb, const LoadScenes
     throw UsageError(fmt::format("--ui-scale {}: give a number from 0.5 to 4", *options.ui_scale));
   check_pictures(options);
   check_files(options);
-  const InterruptGuard guard;  // before the first file is opened: nothing is to be left of any
-  const demos::PictureFolders folders(options);  // where other outputs may be wanted, too
+  const InterruptGuard guard;  // before the first file is opened, so that no part of one is left
+  const demos::PictureFolders folders(options);  // other outputs may go there as well
   OutputFiles files(written_files(options));
   check_saved_scene(options);
-  // A recording and a trace are of one scene.
+  // A recording or a trace belongs to one scene.
   const std::vector<demos::NamedDemo> scenes =
       load(!options.headless && !options.record && !options.replay && !options.trace);
   SC_ASSERT(!scenes.empty(), "{} runs no scene", verb);
-  // What cannot be written is no surprise at the end of a long run.
+  // Opened now, so that a file that cannot be written is refused before a long run.
   base::WholeFile* const trace_file = files.open(options.trace);
   base::WholeFile* const json_file = files.open(options.json);
   ls_sim::Findings findings;
-  // What kernels built for the SPU take there is known for each run of them.
+  // For kernels built for the SPU, each run has the times that it would take on a PS3.
   std::optional<ls_sim::Timing> timing;
   if (options.machine == ls_sim::Machine::kSpu) timing.emplace(options.spes);
   std::optional<ls_sim::Trace> trace;
@@ -232,7 +232,7 @@ int run_demo(const DemoOptions& options, std::string_view verb, const LoadScenes
     fmt::print(stderr, "softcell: the scene {} has no bodies\n", run.demo->scene_name());
   const DemoFigures figures = demo_figures(options, *run.demo, run.record, timing ? &*timing : nullptr);
   const std::vector<ls_sim::Finding> found = findings.list();
-  print_findings(found);  // before a file that cannot be written ends the run
+  print_findings(found);  // before a file that cannot be written may end the run
   if (options.save_scene) run.demo->save_scene(options.save_scene);
   if (trace) trace->write(*trace_file);
   if (json_file != nullptr) {

@@ -1,5 +1,5 @@
 #pragma once
-// Runs a demo in a window or without, and loads the scenes to go through.
+// Runs a demo with or without a window, and loads its scenes.
 
 #include <fmt/format.h>
 
@@ -22,26 +22,26 @@
 
 namespace softcell::tool {
 
-/// The files that the options ask for, pictures in folders aside.
+/// The files that the options ask for, except pictures in folders.
 std::vector<NamedFile> written_files(const DemoOptions& options);
 
 /// @param scene  the files that it was read from
-/// @throws UsageError  one of them would be replaced.
+/// @throws UsageError  an output would replace one of them.
 void check_scene_kept(const std::vector<std::filesystem::path>& scene, const DemoOptions& options);
 
-/// Loads the scene that the options ask for; with `all` those of the same dimension that come with softcell,
-/// too. The first is the one to begin with.
+/// Loads the scene that the options ask for; with `all` also the scenes of the same dimension that come with softcell. The demo begins with
+/// the first one.
 using LoadScenes = std::function<std::vector<demos::NamedDemo>(bool all)>;
 
-/// Runs a demo, in a window or without; steps it, writes its pictures, reports what it cost.
-/// @param verb  "demo 3d"   @param load  is called once, before threads are started: scenes in Lua fork
+/// Runs a demo with or without a window: steps it, writes its pictures, and reports what it cost.
+/// @param verb  "demo 3d"   @param load  is called once, before threads are started, because scenes in Lua fork
 /// @return the exit status: 0, 3 when checked kernels have findings, or 130 when interrupted.
-/// @throws UsageError  files are asked for that a window does not write, a video of no known format, or a file in
-///                     the place of another that is written or read.
+/// @throws UsageError  the options ask for files that a window does not write, for a video of no known format, or for a file in the place
+/// of another one that is written or read.
 int run_demo(const DemoOptions& options, std::string_view verb, const LoadScenes& load);
 
-/// Writes what `saved` returns for the path. @param file  none: a free name  @return the path
-/// @throws std::runtime_error  as saved(), or the files cannot be written
+/// Writes the files that `saved` returns for the path. @param file  none: a free name  @return the path
+/// @throws std::runtime_error  as for saved(), or the files cannot be written
 template <class SceneOf, class Saved>
 std::filesystem::path write_scene(const SceneOf& scene, const std::optional<std::filesystem::path>& file,
                                   const Saved& saved) {
@@ -50,12 +50,11 @@ std::filesystem::path write_scene(const SceneOf& scene, const std::optional<std:
   return path;
 }
 
-/// @param log    has begun `first`.
-/// @param first  the scene to begin with; with `all` those of its dimension that come with softcell follow.
-/// @param load   of a built-in scene's name. One that cannot be loaded is left out, with a sentence: its
-/// model
-///               may not be installed.
-/// @tparam OneDemo  a SceneDemo, made of a scene, a log, SimulationOptions and the options.
+/// @param log    has begun with `first`.
+/// @param first  the scene to begin with; with `all` it is followed by those of its dimension that come with softcell.
+/// @param load   loads a built-in scene by name. A scene that cannot be loaded is left out with a message: its model may not
+///               be installed.
+/// @tparam OneDemo  a SceneDemo, which is made from a scene, a log, SimulationOptions and the options.
 template <class OneDemo, class Options>
 std::vector<demos::NamedDemo> demos_of(const Options& options, const typename OneDemo::Log& log,
                                        const typename OneDemo::Scene& first, bool all,

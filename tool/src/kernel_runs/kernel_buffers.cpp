@@ -25,7 +25,7 @@ std::vector<std::byte> initial_bytes(const BufferSpec& spec, std::uint64_t free_
   }
   std::error_code error;
   const std::uintmax_t size = std::filesystem::file_size(spec.file, error);
-  if (!error) check_fits(spec, size, free_bytes);  // before it is read
+  if (!error) check_fits(spec, size, free_bytes);  // before reading the file
   auto bytes = base::read_file(spec.file, free_bytes);
   if (bytes.empty())
     throw std::runtime_error("buffer " + spec.name + ": " + spec.file.string() +

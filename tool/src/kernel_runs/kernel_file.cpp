@@ -16,7 +16,7 @@ namespace {
 constexpr std::string_view kSuffix = ".spu.elf";
 constexpr std::string_view kCheckedSuffix = ".checked.spu.elf";
 
-/// The file that holds the flavour asked for: one beside it, or itself.
+/// The file that holds the wanted flavour: one beside this file, or this file itself.
 std::filesystem::path flavour_of(const std::filesystem::path& file, bool checked) {
   const std::string text = file.string();
   if (!checked || text.ends_with(kCheckedSuffix) || spu_kernels::holds_checked_flavour(file)) return file;
@@ -48,7 +48,7 @@ std::string built_in_names() {
   return names;
 }
 
-/// A program for the SPU has no flavours: the interpreter sees each access by itself.
+/// A program for the SPU has no flavours, because the interpreter sees each access by itself.
 bool is_spu_file(const std::filesystem::path& file) {
   constexpr std::size_t kHeaderBytes = 52;  // of a 32-bit ELF file
   std::array<char, kHeaderBytes> header{};

@@ -11,31 +11,31 @@
 
 namespace softcell::tool {
 
-/// Bytes by which the stack of an instrumented flavour is larger than its kernel declares: the checks need
-/// them.
+/// The bytes by which the stack of an instrumented flavour is larger than its kernel declares, because the checks need them.
 inline constexpr std::uint32_t kCheckStackBytes = SOFTCELL_CHECKED_STACK_BYTES;
 
-/// That many for an instrumented flavour, 0 for any other image.
+/// kCheckStackBytes for an instrumented flavour, 0 for any other image.
 inline std::uint32_t stack_for_checks(const ls_sim::KernelImage& image) {
   return image.checked && image.machine == ls_sim::Machine::kHost ? kCheckStackBytes : 0;
 }
 
 /// The names of all kernels of this project, sorted.
-/// @param checked  only of those that have an instrumented flavour
+/// @param checked  only kernels that have an instrumented flavour
 std::vector<std::string> built_in_kernels(bool checked);
 
 using spu_kernels::load_kernel;
 
-/// The file that load_kernel_file() reads; none when the kernel is one of this project's.
+/// The file that load_kernel_file() reads; none for a kernel of this project.
 /// @throws std::runtime_error  one sentence: there is no such flavour.
 std::optional<std::filesystem::path> find_kernel_file(const std::string& image, bool checked);
 
-/// Loads a kernel by the path of its .spu.elf file, by that of a program built for the SPU, or by name when it is one of
-/// this project's.
-/// @param checked  take its instrumented flavour: NAME.checked.spu.elf beside NAME.spu.elf. A program built for the SPU
+/// Loads a kernel by the path of its .spu.elf file, by the path of a program built for the SPU, or by name if it is a kernel of this
+/// project.
+/// @param checked  load its instrumented flavour: NAME.checked.spu.elf beside NAME.spu.elf. A program built for the SPU
 ///                 needs none.
-/// @param machine  refuse an image with other instructions.
-/// @throws std::runtime_error  one sentence: neither, no such flavour, another machine, or why it is not loadable.
+/// @param machine  refuse an image for another machine.
+/// @throws std::runtime_error  one sentence: there is no such file or kernel, no such flavour, it is for another machine, or it cannot be
+/// loaded.
 ls_sim::KernelImage load_kernel_file(const std::string& image, bool checked,
                                      std::optional<ls_sim::Machine> machine = {});
 

@@ -19,7 +19,7 @@ std::string place_and_rule(const dma::Fault& fault) {
   return fmt::format("{} {}", fault.place.empty() ? fault.kernel : fault.place, dma::name(fault.rule));
 }
 
-/// The word that holds a byte, as number and as float; the byte alone where the buffer ends within the word.
+/// The word that contains a byte, as number and as float; only the byte if the buffer ends within the word.
 std::string value_at(std::span<const std::byte> bytes, std::size_t offset) {
   SC_ASSERT(offset < bytes.size(), "byte {} of {}", offset, bytes.size());
   const std::size_t begin = offset / kWordBytes * kWordBytes;

@@ -26,7 +26,7 @@ ls_sim::SpeOptions spe_options(const KernelTask& task, const RunSettings& settin
   return options;
 }
 
-/// While the object lives, it ends the group's runs when it is wanted.
+/// While the object lives, it ends the group's runs as soon as `wanted` returns true.
 class Interrupter {
  public:
   Interrupter(ls_sim::SpeGroup& group, const std::function<bool()>& wanted) {
@@ -77,7 +77,7 @@ KernelRun run_kernel(dma::AddressSpace& memory, const ls_sim::KernelImage& image
     for (const std::uint32_t value : task.in_mbox) group.problem_state(spe).write_in_mbox(value);
     group.prepare(spe, image, buffers.arguments(spe));
   }
-  for (int spe = 0; spe < task.spes; ++spe) group.start(spe);  // which may write to the others' local stores
+  for (int spe = 0; spe < task.spes; ++spe) group.start(spe);  // it may write to others' local stores
   const Interrupter interrupter(group, settings.interrupted);
   KernelRun run;
   for (int spe = 0; spe < task.spes; ++spe) {

@@ -16,21 +16,21 @@
 
 namespace softcell::tool {
 
-/// How one run differs from another of the same task.
+/// The settings in which runs of the same task differ.
 struct RunSettings {
   dma::Schedule schedule{};
-  /// kSimulated: SPEs go in turns as well, so that the run is the same every time.
+  /// kSimulated: SPEs also take turns, so that the run is the same every time.
   ls_sim::Clock clock = ls_sim::Clock::kHost;
-  /// Collects cycles. Then the clock is the simulated one, and SPEs go in the order of its time.
+  /// Collects cycles. The clock is then the simulated one, and SPEs run in the order of its time.
   ls_sim::Timing* timing = nullptr;
   ls_sim::Debugger* debugger = nullptr;
   ls_sim::Trace* trace = nullptr;
   const ls_sim::HostCalls* host_calls = nullptr;
-  /// Asked every few milliseconds: true ends the run as its deadline would. Empty: nobody wants that.
+  /// Called every few milliseconds: if it returns true, the run ends as at its deadline. Empty: it is never interrupted.
   std::function<bool()> interrupted = {};
 };
 
-/// What one SPE did, and what it left in its outbound mailboxes.
+/// The result of one SPE, and what it left in its outbound mailboxes.
 struct SpeRun {
   ls_sim::RunResult result;
   std::optional<std::uint32_t> out_mbox, out_intr_mbox;
@@ -42,14 +42,14 @@ std::string describe_end(const ls_sim::RunResult& result);
 
 struct KernelRun {
   std::vector<SpeRun> spes;
-  std::vector<ls_sim::Finding> findings;  ///< of a checked kernel
+  std::vector<ls_sim::Finding> findings;  ///< findings of a checked kernel
 
   /// A sentence for each SPE that did not end with status 0.
   std::vector<std::string> failures(const ls_sim::KernelImage& image) const;
 };
 
-/// Runs the image on SPEs 0 to task.spes - 1, all with the same arguments; each learns its number from main's
-/// first parameter. Always returns, at the latest by the task's deadline.
+/// Runs the image on SPEs 0 to task.spes - 1, all with the same arguments; main's first parameter tells each SPE its number. Always
+/// returns, at the latest at the task's deadline.
 KernelRun run_kernel(dma::AddressSpace& memory, const ls_sim::KernelImage& image,
                      const KernelBuffers& buffers, const KernelTask& task, const RunSettings& settings);
 

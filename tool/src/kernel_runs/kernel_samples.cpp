@@ -11,13 +11,13 @@
 namespace softcell::tool {
 namespace {
 
-// The widths of the contracts' numbers, for kernels built for the SPU.
+// The widths of the numbers in the contracts, for kernels built for the SPU.
 constexpr dma::BufferOptions kFloats{.element_bytes = sizeof(float)};
 constexpr dma::ElementRun kRotationsJobRecord[] = {{24, 8}, {104, 4}};
 constexpr dma::ElementRun kTransfersJobRecord[] = {{8, 8}, {120, 4}};
 constexpr dma::ElementRun kJobBoardRecord[] = {{4, 4}, {4, 2}, {120, 8}};
 
-/// Rotations that are far off and one that has to be found anew: the deepest ways.
+/// Rotations that are far off, and one that must be found from nothing: the deepest paths.
 void run_rotations(SampleRun& sample) {
   dma::Buffer<spu::RotationMatrices> matrices(sample.memory(), "matrices", 1, kFloats);
   dma::Buffer<spu::MatchRotations> starts(sample.memory(), "starts", 1, kFloats);
@@ -38,7 +38,7 @@ void run_transfers(SampleRun& sample) {
   sample.run(job.ea(), 16);
 }
 
-/// A board that tells the loop to end: the compiler makes one function with one frame of all it does.
+/// A board that tells the loop to end at once: this measures all of it, because the compiler makes it one function with one frame.
 void run_job_loop(SampleRun& sample) {
   dma::Buffer<spu::JobBoard> board(sample.memory(), "board", 1, {.record = kJobBoardRecord});
   board[0].stop = 1;

@@ -1,5 +1,5 @@
 #pragma once
-// A representative piece of work for each kernel, for measuring what it needs.
+// A representative piece of work for each kernel, by which its needs are measured.
 
 #include <cstddef>
 #include <cstdint>
@@ -15,27 +15,27 @@
 
 namespace softcell::tool {
 
-/// One SPE that runs a kernel alone, so that all the stack it uses is the kernel's.
+/// One SPE that runs a kernel alone, so that all the stack in use is the kernel's.
 class SampleRun {
  public:
-  /// @param kernel  must outlive it
+  /// @param kernel  must outlive this object
   explicit SampleRun(const ls_sim::KernelImage& kernel) : kernel_(kernel) {}
 
-  /// May be called again.
-  /// @param pieces  of work that is done then: KernelSample::piece
+  /// Runs the kernel. May be called again.
+  /// @param pieces  the work that this run does, counted in KernelSample::piece
   /// @throws std::runtime_error  the kernel failed.
   void run(dma::EffectiveAddress argp, std::size_t pieces = 1);
-  /// More pieces of work are done, by all runs together.
+  /// Adds to the pieces of work that all runs together have done.
   void worked(std::size_t pieces) { pieces_ += pieces; }
-  /// What has run so far was to measure the stack; the time of what comes now counts.
+  /// Call it after the runs that only measure the stack; the time of later runs counts.
   void begin_timing();
 
   dma::AddressSpace& memory() { return memory_; }
   std::uint32_t stack_used() const { return spes_.statistics(0).stack_high_water; }
-  /// For a piece of work, on a PS3, waits included. None: the kernel is built for the host, of which only waits are known.
+  /// Cycles per piece of work on a PS3, waits included. None: the kernel is built for the host, for which only waits are known.
   std::optional<double> cycles_a_piece() const;
   std::size_t pieces() const { return pieces_; }
-  /// Those in which the cycles went by that count, the one with most first.
+  /// The functions that the counted cycles were spent in, the one with most cycles first.
   std::vector<ls_sim::FunctionCycles> functions() const;
 
  private:
@@ -46,14 +46,14 @@ class SampleRun {
   ls_sim::Timing timing_{1};
   ls_sim::SpeGroup spes_{memory_, options()};
   std::uint64_t begin_ = 0;
-  std::vector<ls_sim::FunctionCycles> before_;  // what functions took to measure the stack
+  std::vector<ls_sim::FunctionCycles> before_;  // the cycles of functions in the runs that measured the stack
   std::size_t pieces_ = 0;
 };
 
 /// The work of one kernel.
 struct KernelSample {
   std::string_view kernel;
-  std::string_view piece;  ///< what its cycles are counted for: "particle"
+  std::string_view piece;  ///< unit in which its cycles are given: "particle"
   void (*run)(SampleRun& sample);
 };
 
@@ -66,7 +66,7 @@ struct SampleNeeds {
   std::vector<ls_sim::FunctionCycles> functions = {};
 };
 
-/// Those that need nothing but their job: of job_loop, rotations and transfers.
+/// Samples that need nothing but their job: for job_loop, rotations and transfers.
 std::span<const KernelSample> plain_samples();
 
 /// None: the kernel has no sample.

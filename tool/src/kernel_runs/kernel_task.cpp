@@ -24,7 +24,7 @@ bool is_name(std::string_view text) {
          std::all_of(text.begin(), text.end(), [&](char c) { return letter(c) || digit(c); });
 }
 
-/// All of `text` as a number in decimal or, after 0x, in hexadecimal.
+/// The whole text as a number in decimal or, after 0x, in hexadecimal.
 std::optional<std::uint64_t> parse_unsigned(std::string_view text) {
   const bool hexadecimal = text.starts_with("0x") || text.starts_with("0X");
   if (hexadecimal) text.remove_prefix(2);
@@ -72,7 +72,7 @@ const char* option(BufferSpec::Direction direction) {
   }
 }
 
-/// The name before the '=' and what stands behind it.
+/// The name before the '=' and the text after it.
 std::pair<std::string, std::string> split_name(const std::string& text, const std::string& refusal) {
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos || equals + 1 == text.size() || !is_name(text.substr(0, equals)))

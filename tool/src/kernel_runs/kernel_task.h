@@ -1,5 +1,5 @@
 #pragma once
-// A kernel to be run with the user's files as its buffers: what `spu run` and `spu explore` have in common.
+// A kernel to run with the user's files as its buffers: the common part of `spu run` and `spu explore`.
 
 #include <chrono>
 #include <cstdint>
@@ -20,13 +20,13 @@ namespace softcell::tool {
 struct BufferSpec {
   enum Direction : std::uint8_t {
     kIn,     ///< read from the file; SPEs may only read it
-    kOut,    ///< `bytes` zeros at first; becomes the file when the run has succeeded
-    kInOut,  ///< read from the file, and replaces it when the run has succeeded
+    kOut,    ///< `bytes` zeros at first; written to the file if the run succeeds
+    kInOut,  ///< read from the file, and replaces it if the run succeeds
   };
   Direction direction = kIn;
   std::string name;
   std::filesystem::path file;
-  std::uint64_t bytes = 0;  ///< of kOut only
+  std::uint64_t bytes = 0;  ///< for kOut only
 };
 
 std::string_view name(BufferSpec::Direction direction);
@@ -43,20 +43,20 @@ using ArgumentSpec = std::variant<std::uint64_t, AddressOf, SizeOf>;
 struct KernelTask {
   std::string image = {};  ///< a file, or the name of a kernel of this project
   bool checked = false;
-  std::optional<ls_sim::Machine> machine = {};  ///< that of --engine; none: the image's own
-  /// Who starts a program built for the SPU. As a thread group does: `arguments`, at most four, are main's own.
+  std::optional<ls_sim::Machine> machine = {};  ///< of --engine; none: that of the image
+  /// Who starts a program built for the SPU. If a thread group does, `arguments`, at most four, are main's own arguments.
   ls_sim::EntryState entry_state = ls_sim::EntryState::kLibspe2;
   std::vector<BufferSpec> buffers = {};
   std::vector<ArgumentSpec> arguments = {};
-  std::vector<std::uint32_t> in_mbox = {};  ///< waiting in the inbound mailbox of each SPE, at most four
+  std::vector<std::uint32_t> in_mbox = {};  ///< placed in the inbound mailbox of each SPE, at most four
   int spes = 1;
   std::chrono::milliseconds deadline{10'000};
 };
 
-// What the command line says, as the structures above.
-// @throws UsageError  one sentence with the text and what is allowed.
+// Parsers of option values.
+// @throws UsageError  one sentence with the text and the allowed values.
 
-/// "native" or "interpreter" of --engine; nothing of an empty text.
+/// "native" or "interpreter" of --engine; none for an empty text.
 std::optional<ls_sim::Machine> parse_engine(const std::string& text);
 
 /// "libspe2" or "thread-group" of --entry.
@@ -65,11 +65,11 @@ ls_sim::EntryState parse_entry(const std::string& text);
 /// "NAME=FILE" of --in and --inout.
 BufferSpec parse_file_buffer(BufferSpec::Direction direction, const std::string& text);
 
-/// "NAME=FILE:SIZE" of --out. SIZE is in bytes, or in KB or MB with K or M behind it.
+/// "NAME=FILE:SIZE" of --out. SIZE is in bytes, or with K or M after it in KB or MB.
 BufferSpec parse_out_buffer(const std::string& text);
 
-/// "@NAME" (address of a buffer), "#NAME" (its size in bytes), "f32:VALUE" (the bits of a float), or an
-/// integer of 64 bits, decimal or with 0x; a negative one is taken modulo 2^64.
+/// "@NAME" (address of a buffer), "#NAME" (its size in bytes), "f32:VALUE" (the bits of a float), or a 64-bit integer, decimal or with 0x;
+/// a negative one is taken modulo 2^64.
 ArgumentSpec parse_argument(const std::string& text);
 
 /// A 32-bit number of --in-mbox.
@@ -81,11 +81,11 @@ std::chrono::milliseconds parse_deadline(const std::string& text);
 /// The files of --out and --inout.
 std::vector<NamedFile> written_files(const KernelTask& task);
 
-/// The kernel image, if it is a file, in both its flavours when it is checked, and the files of --in.
+/// The kernel image if it is a file, in both flavours if it is checked, and the files of --in.
 /// @throws std::runtime_error  one sentence: there is no such flavour.
 std::vector<NamedFile> read_files(const KernelTask& task);
 
-/// Refuses what no single option shows: two buffers of one name or to one file, arguments that name none.
+/// Refuses mistakes that concern several options: two buffers with one name or one file, and arguments that name no buffer.
 void check(const KernelTask& task);
 
 }  // namespace softcell::tool

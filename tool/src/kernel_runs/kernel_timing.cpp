@@ -28,7 +28,7 @@ std::vector<Stall> all_stalls() {
   return all;
 }
 
-/// Those that occur at all: a table of eleven columns would be mostly zeros.
+/// The stalls that occur at all, because most of a table's eleven columns would be zero.
 std::vector<Stall> stalls_in(const CycleCounts& counts) {
   std::vector<Stall> found = all_stalls();
   std::erase_if(found, [&](Stall stall) { return counts.stalled(stall) == 0; });

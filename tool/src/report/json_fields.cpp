@@ -9,9 +9,9 @@ namespace softcell::tool {
 namespace {
 
 constexpr std::size_t kMostCharacters = 4096;
-constexpr double kMostMicroseconds = 4e12;  // some 46 days: exact in a double to the nanosecond
+constexpr double kMostMicroseconds = 4e12;  // about 46 days: a double holds nanoseconds exactly up to there
 
-/// A value as a message shows it: cut when it is long.
+/// A value in the form in which messages show it: cut if it is long.
 std::string shown(const nlohmann::json& value) {
   if (value.is_structured()) return value.is_array() ? "an array" : "an object";
   std::string text = value.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);

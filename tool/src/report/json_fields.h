@@ -6,11 +6,11 @@
 
 namespace softcell::tool {
 
-/// An object of a file, read field by field. What is missing, of another type or out of range is refused with
-/// a std::runtime_error that says where, what was found and what is expected.
+/// Reads an object of a file field by field. Refuses a field that is missing, of another type or out of range with a std::runtime_error
+/// that says where it is, what was found and what is expected.
 class JsonFields {
  public:
-  /// @param where  how the object is called in messages: "traceEvents[3]".
+  /// @param where  the object's name in messages: "traceEvents[3]".
   JsonFields(const nlohmann::json& object, std::string where);
 
   std::uint64_t integer(const char* key, std::uint64_t least, std::uint64_t most) const;

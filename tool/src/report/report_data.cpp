@@ -15,7 +15,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// One number of each event.
+/// A column with one number for each event.
 template <typename Events, typename Number>
 Json column(const Events& events, Number number) {
   Json values = Json::array();
@@ -45,7 +45,7 @@ Json commands(const std::vector<TraceCommand>& events) {
   result["row"] = column(events, [](const TraceCommand& e) { return e.row; });
   result["tag"] = column(events, [](const TraceCommand& e) { return e.tag; });
   result["lsa"] = column(events, [](const TraceCommand& e) { return e.lsa; });
-  // In two halves: JavaScript's numbers hold 53 bits.
+  // In two halves, because JavaScript's numbers hold only 53 bits.
   result["eaHigh"] = column(events, [](const TraceCommand& e) { return e.ea >> 32; });
   result["eaLow"] = column(events, [](const TraceCommand& e) { return e.ea & 0xFFFFFFFFu; });
   result["size"] = column(events, [](const TraceCommand& e) { return e.size; });

@@ -9,8 +9,7 @@
 namespace softcell::tool {
 namespace {
 
-/// The text with its markers ("@data@") replaced, from first to last; what is filled in is not looked at
-/// again.
+/// The text with its markers ("@data@") replaced, from first to last. The inserted text is not searched for markers.
 std::string fill_in(std::string_view text,
                     std::initializer_list<std::pair<std::string_view, std::string_view>> values) {
   std::string result;
@@ -51,8 +50,7 @@ std::string escape_html(std::string_view text) {
   return result;
 }
 
-/// JSON that may stand in a script element: without "<", nothing in it can end the element or begin a
-/// comment.
+/// JSON that is safe in a script element: without "<", nothing in it can end the element or begin a comment.
 std::string embeddable(const nlohmann::ordered_json& data) {
   const std::string json = data.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
   std::string result;

@@ -1,5 +1,5 @@
 #pragma once
-// The page of softcell report, and what of a trace is in it.
+// Makes the page of softcell report, and the data of a trace that are in it.
 
 #include <nlohmann/json_fwd.hpp>
 #include <span>
@@ -11,15 +11,15 @@
 
 namespace softcell::tool {
 
-/// The trace as the page of `softcell report` reads it (tool/report_page/trace.js): events as columns of
-/// whole numbers, times as the distance from the event before, so that a long trace stays small.
+/// The trace in the form that the page of `softcell report` reads (tool/report_page/trace.js): events as columns of whole numbers, times as
+/// the distance from the previous event, so that a long trace stays small.
 nlohmann::ordered_json report_data(const TraceFile& trace);
 
-/// Of tool/report_page: the page, its style, and its scripts in the order in which they build on each other.
+/// The files of tool/report_page: the page, its style, and its scripts in the order in which they depend on each other.
 std::span<const base::EmbeddedFile> embedded_report();
 
 /// One HTML page with everything in it: it opens offline and fetches nothing.
-/// @param title  what the page is of, such as the trace's file name.
+/// @param title  what the page shows, such as the trace's file name.
 std::string report_page(const TraceFile& trace, std::string_view title);
 
 }  // namespace softcell::tool

@@ -1,5 +1,5 @@
 #pragma once
-// softcell report: a trace as a page to look at.
+// softcell report: makes a page from a trace.
 
 #include <filesystem>
 #include <memory>

@@ -19,15 +19,15 @@ namespace {
 using nlohmann::json;
 
 constexpr std::uint64_t kFormat = 1;
-constexpr std::uint64_t kMostRows = 999;  // as many as the format's numbers of rows hold
+constexpr std::uint64_t kMostRows = 999;  // the largest row number in the format
 constexpr std::uint64_t kFirstCommandRow = 3;
 constexpr std::uint64_t kMostCommandBytes =
     std::uint64_t{dma::kMaxTransferBytes} / dma::kListElementBytes * dma::kMaxTransferBytes;
-constexpr std::uint64_t kMostCount = std::uint64_t{1} << 53;  // that the page can hold exactly
-constexpr std::size_t kMostSpes = 256;                        // contexts of a libspe2 program
+constexpr std::uint64_t kMostCount = std::uint64_t{1} << 53;  // the page can hold it exactly
+constexpr std::size_t kMostSpes = 256;                        // the contexts of a libspe2 program
 constexpr std::size_t kMostFileBytes = std::size_t{4} << 30;
 
-/// The events, taken one by one so that a long trace is never in memory as a tree of values.
+/// Reads the events one by one, so that a long trace is never in memory as a tree of values.
 class EventReader {
  public:
   explicit EventReader(TraceFile& file) : file_(file) { file_.spes.resize(kMostSpes); }
@@ -35,7 +35,7 @@ class EventReader {
   void read(const json& value) {
     const JsonFields event(value, "traceEvents[" + std::to_string(count_++) + "]");
     const std::string phase = event.text("ph");
-    if (phase == "M") return;  // names of processes and rows: the numbers say it all
+    if (phase == "M") return;  // names of processes and rows are not needed: their numbers are enough
     const std::uint64_t process = event.integer("pid", 1, kMostSpes);
     highest_ = std::max(highest_, process);
     SC_ASSERT(process >= 1 && process <= file_.spes.size(), "process {} of {}", process, file_.spes.size());
@@ -56,12 +56,12 @@ class EventReader {
     }
   }
 
-  /// The highest SPE with an event, counted from 1; 0 when there is none.
+  /// The highest SPE with an event, counted from 1; 0 if there is none.
   std::uint64_t highest_spe() const { return highest_; }
 
  private:
-  /// What jobs, waits and commands share. They must come in order of time, and the next of a row not before
-  /// the end of the last: the page finds them by halving.
+  /// Reads the fields that jobs, waits and commands share. In each row they must be in order of time without overlaps, because the page
+  /// finds them by binary search.
   TraceSlice read_slice(const JsonFields& event, std::uint64_t process, std::uint64_t row) {
     const TraceSlice slice{event.time("ts"), event.time("dur"), intern(event.text("name"))};
     SC_ASSERT(process >= 1 && row < 1000, "row {} of process {}", row, process);
@@ -151,7 +151,7 @@ TraceImage read_image(const json& value, const std::string& where) {
   return image;
 }
 
-/// What the file says of itself, behind its events.
+/// Reads what the file states about the trace, after its events.
 void read_about(const JsonFields& about, std::uint64_t highest_spe, TraceFile& file) {
   if (about.integer("format", 0, kMostCount) != kFormat) {
     about.refuse("\"format\" is of another version of softcell; " + std::to_string(kFormat) + " is expected");
@@ -186,7 +186,7 @@ TraceFile parse_trace(std::string_view text) {
                       event == json::parse_event_t::array_end;
     if (!in_events || depth != 2 || !ends) return true;
     events.read(value);
-    return false;  // its value is not needed any more
+    return false;  // the value is no longer needed
   };
   json root;
   try {

@@ -47,7 +47,7 @@ std::vector<std::string> environment_with(const std::map<std::string, std::strin
   return environment;
 }
 
-/// Why a program was not started. A name without a slash is looked for in the folders of PATH only.
+/// Why a program was not started. A name without a slash is only searched for in the folders of PATH.
 std::string why_not_run(const std::string& program, int error) {
   if (error != ENOENT) return std::strerror(error);
   if (program.find('/') != std::string::npos) return "there is no such file";
@@ -62,7 +62,7 @@ std::vector<char*> pointers_to(std::vector<std::string>& texts) {
   return pointers;
 }
 
-/// While the object lives, the interrupts of the terminal are for the child alone.
+/// While the object lives, only the child receives the interrupts of the terminal.
 class InterruptsLeftToTheChild {
  public:
   InterruptsLeftToTheChild() {

@@ -1,5 +1,5 @@
 #pragma once
-// A program that runs with settings of its own in the environment.
+// Runs a program with additional variables in its environment.
 
 #include <filesystem>
 #include <map>
@@ -9,19 +9,19 @@
 namespace softcell::tool {
 
 struct ChildEnd {
-  int status = 0;  ///< its exit status; of one that a signal has ended, 128 + the signal, as a shell says it
-  int signal = 0;  ///< 0: none has ended it
+  int status = 0;  ///< its exit status; if a signal has ended it, 128 + the signal, as shells report it
+  int signal = 0;  ///< 0: no signal has ended it
 };
 
-/// Runs a program and waits for its end. It has the terminal's signals; while it runs, those do not end the caller.
-/// @param words       the program, looked for as a shell does, and its arguments; not empty.
-/// @param variables   are set in its environment; an empty value takes one away.
-/// @param output      a file that receives its standard output; empty: it has the caller's.
-/// @throws std::runtime_error  it cannot be started; the message says why.
+/// Runs a program and waits for its end. It gets the terminal's signals, which do not end the caller meanwhile.
+/// @param words       the program, searched for as a shell does, and its arguments; not empty.
+/// @param variables   are set in its environment; an empty value removes the variable.
+/// @param output      a file that receives its standard output; empty: it shares the caller's.
+/// @throws std::runtime_error  the program cannot be started; the message says why.
 ChildEnd run_child(const std::vector<std::string>& words, const std::map<std::string, std::string>& variables,
                    const std::filesystem::path& output = {});
 
-/// A folder of its own among the temporary files, which goes with the object and what is in it.
+/// A new folder among the temporary files. The destructor removes it with its contents.
 class ScratchFolder {
  public:
   ScratchFolder();
@@ -30,9 +30,9 @@ class ScratchFolder {
   ScratchFolder& operator=(const ScratchFolder&) = delete;
 
   const std::filesystem::path& path() const { return path_; }
-  /// Of a file in it; empty if there is none.
+  /// The text of a file in the folder; empty if there is none.
   std::string text(const std::string& name) const;
-  /// Of each file in it that ends so (".json"), by the files' names.
+  /// The texts of the files in the folder with this ending (".json"), sorted by the files' names.
   std::vector<std::string> texts(const std::string& extension) const;
 
  private:

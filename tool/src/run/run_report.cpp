@@ -15,8 +15,7 @@ namespace {
 
 std::size_t count_in(const nlohmann::json& report, const char* list) { return report.at(list).size(); }
 
-/// The rules that were broken and where, without addresses, which differ from run to run, and in an order of their own, as processes
-/// have none.
+/// The rules that were broken and where, without addresses, which differ from run to run, and sorted, because processes have no order.
 std::set<std::string> mistakes(const nlohmann::json& report) {
   std::set<std::string> all;
   if (report.is_null()) return all;
@@ -30,7 +29,7 @@ std::set<std::string> mistakes(const nlohmann::json& report) {
   return all;
 }
 
-/// Makes the report of one process that of two.
+/// Adds the report of another process to the report of one.
 void add(nlohmann::json& report, const nlohmann::json& other) {
   for (const char* count : {"contexts", "runs", "dma_commands", "dma_bytes"})
     report.at(count) = report.at(count).get<std::int64_t>() + other.at(count).get<std::int64_t>();
@@ -40,7 +39,7 @@ void add(nlohmann::json& report, const nlohmann::json& other) {
   report.at("whole") = report.at("whole").get<bool>() && other.at("whole").get<bool>();
 }
 
-/// The first line in which two texts differ, and its number from 1.
+/// The first line in which two texts differ, and its number, counted from 1.
 struct OutputLine {
   std::size_t number;
   std::string first, other;
@@ -102,7 +101,7 @@ std::optional<std::string> ProgramRun::difference(const ProgramRun& other) const
 }
 
 std::string ProgramRun::summary() const {
-  constexpr int kNotStarted = 127;  // what the loader and shells end with
+  constexpr int kNotStarted = 127;  // the exit status of the loader and of shells for this
   if (report.is_null() && end.status == kNotStarted)
     return "the program or one of its libraries was not found, as its last line says";
   if (report.is_null()) return "no SPE context was made with softcell's libspe2";

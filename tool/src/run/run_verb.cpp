@@ -20,10 +20,10 @@ namespace softcell::tool {
 namespace {
 
 constexpr std::uint64_t kMaxDeadline = 4'000'000;
-/// Of SPEs that take turns: one that reads its local store until another one has written there has the turn for ever.
+/// Default when SPEs take turns: one that reads its local store until another one has written there would keep the turn for ever.
 constexpr std::uint64_t kDeadlineOfTurns = 30'000;
 
-/// A library that is loaded before those of the program.
+/// The path of a library that is loaded before those of the program.
 std::string library_for(const char* option, const std::string& name) {
   const auto folder = std::filesystem::read_symlink("/proc/self/exe").parent_path();
   for (const char* place : {SOFTCELL_ALLOCATIONS_BUILT, SOFTCELL_ALLOCATIONS_INSTALLED}) {
@@ -34,7 +34,7 @@ std::string library_for(const char* option, const std::string& name) {
                                        name, folder.string()));
 }
 
-/// What LD_PRELOAD has to name; empty for no change.
+/// The value of LD_PRELOAD; empty: it is not changed.
 std::string preloaded(const RunOptions& options) {
   std::string libraries;
   const auto add = [&](const std::string& library) { libraries += (libraries.empty() ? "" : ":") + library; };
@@ -112,7 +112,7 @@ int run_many(const RunOptions& options, OutputFiles& files, base::WholeFile* jso
         fmt::print(stderr, "softcell: {} under seed {}, beside seed 1: {}\n", options.words.front(), seed,
                    *difference);
       }
-      if (first.end.signal != 0 && first.report.is_null()) break;  // somebody wants it to end
+      if (first.end.signal != 0 && first.report.is_null()) break;  // somebody wants the run to end
       if (!options.quiet) bar.show(seed);
     }
   }

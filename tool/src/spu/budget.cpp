@@ -1,4 +1,4 @@
-// softcell spu budget: what each kernel takes of its 256 KB.
+// softcell spu budget: shows how much each kernel takes of its 256 KB.
 
 #include <fmt/format.h>
 
@@ -19,7 +19,7 @@
 namespace softcell::tool {
 namespace {
 
-/// A kernel as one of the compilers has made it.
+/// A kernel as one of the compilers has built it.
 struct Build {
   ls_sim::KernelImage kernel;
   std::optional<SampleNeeds> needs;  ///< none: they were not measured
@@ -27,11 +27,10 @@ struct Build {
 
 struct BudgetRow {
   Build build;
-  std::optional<Build> on_spu;  ///< the same kernel built for the SPU: softcell's own
+  std::optional<Build> on_spu;  ///< the same kernel built for the SPU, for softcell's own kernels
 };
 
-/// Only work that softcell has for a kernel of its own can measure its stack; another kernel may have the
-/// same name.
+/// The stack is only measured for softcell's own kernels, for which there is work; a kernel from a file may have the same name.
 BudgetRow budget_row(const std::string& kernel, bool checked, std::span<const KernelSample> samples) {
   BudgetRow row{{load_kernel_file(kernel, checked), {}}, {}};
   if (find_kernel_file(kernel, checked) || row.build.kernel.checked) return row;
@@ -119,7 +118,7 @@ nlohmann::ordered_json to_json(const BudgetRow& row) {
   return fields;
 }
 
-/// A sentence for each kernel that passes its budget; empty: none does.
+/// A sentence for each kernel that exceeds its budget; empty: none does.
 std::string over_budget(const std::vector<BudgetRow>& rows) {
   std::string sentences;
   const auto look_at = [&](const Build& build, const char* where) {

@@ -26,17 +26,17 @@ struct Function {
 };
 struct SourceFile {
   std::map<int, Line> lines;
-  std::map<int, Function> functions;  ///< by the line of their first instruction
+  std::map<int, Function> functions;  ///< by the line of the function's first instruction
 };
 
-/// brz, brhnz, bihz, ...: all that may go either way.
+/// brz, brhnz, bihz, ...: the branches that may go either way.
 bool is_conditional(const std::string& mnemonic) {
   if (!mnemonic.starts_with("br") && !mnemonic.starts_with("bi")) return false;
   const std::string condition = mnemonic.substr(2);
   return condition == "z" || condition == "nz" || condition == "hz" || condition == "hnz";
 }
 
-/// Of either machine.
+/// The instructions of a function, for either machine.
 std::vector<CoveredInstruction> instructions_of(const ls_sim::KernelImage& image,
                                                 const ls_sim::ImageObject& function) {
   const dma::LocalStoreAddress end{function.begin.value + function.bytes};
@@ -80,7 +80,7 @@ std::string text_of(const std::string& name, const SourceFile& file) {
 
 Coverage::Coverage(const ls_sim::KernelImage& image) : image_(image) {}
 
-/// The instruction behind that at `pc`, as far as it matters: of a kernel built for the host behind a conditional branch.
+/// The address after the instruction at `pc`, where it matters: in a kernel built for the host only after a conditional branch.
 std::uint32_t Coverage::behind(std::uint32_t pc) const {
   if (image_.machine == ls_sim::Machine::kSpu) return pc + 4;
   const std::uint32_t at = pc - image_.begin;
@@ -91,7 +91,7 @@ std::uint32_t Coverage::behind(std::uint32_t pc) const {
   return byte(0) == 0x0F && (byte(1) & 0xF0) == 0x80 ? pc + 6 : kNowhere;
 }
 
-/// Of a kernel built for the host in a handler of signals.
+/// In a kernel built for the host this runs in a signal handler.
 bool Coverage::on_instruction(int spe, dma::LocalStoreAddress pc) {
   Counts& counts = spes_[static_cast<std::size_t>(spe)];
   if (pc.value == counts.next) ++counts.went_on[counts.last];

@@ -1,5 +1,5 @@
 #pragma once
-// Which lines and branches of a kernel were executed.
+// Finds out which lines and branches of a kernel were executed.
 
 #include <array>
 #include <cstdint>
@@ -11,26 +11,25 @@
 
 namespace softcell::tool {
 
-/// Counts instructions, and where execution went from each. SPEs may run at once.
+/// Counts executed instructions, and where execution went from each. SPEs may run at the same time.
 class Coverage final : public ls_sim::Debugger {
  public:
-  /// @param image  what will run. Outlives this.
+  /// @param image  the image that will run; must outlive this object.
   explicit Coverage(const ls_sim::KernelImage& image);
 
-  /// In the tracefile format of lcov: lines with how often they were executed, branches with how often each way was taken,
-  /// functions. A line counts as often as its instruction that was executed most; code that was inlined from the
-  /// SDK's headers counts for the line that called it.
+  /// The counts in lcov's tracefile format: how often lines were executed, how often branches went each way, and functions. A line counts
+  /// as often as its most executed instruction; code that was inlined from the SDK's headers counts for the line that called it.
   /// @throws std::runtime_error  the image has no debug information.
   std::string lcov() const;
 
  private:
-  /// By address.
+  /// Counts of one SPE by address.
   struct Counts {
     std::vector<std::uint64_t> executed = std::vector<std::uint64_t>(dma::kLocalStoreBytes);
-    /// With the next instruction.
+    /// How often execution went on with the next instruction.
     std::vector<std::uint64_t> went_on = std::vector<std::uint64_t>(dma::kLocalStoreBytes);
     std::uint32_t last = 0;
-    std::uint32_t next = kNowhere;  ///< behind the last one
+    std::uint32_t next = kNowhere;  ///< the address after the last one
   };
   static constexpr std::uint32_t kNowhere = ~0u;
 

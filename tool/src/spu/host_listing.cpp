@@ -27,7 +27,7 @@ std::vector<CoveredInstruction> list_host_instructions(const ls_sim::KernelImage
   check(cs_open(CS_ARCH_X86, CS_MODE_64, &disassembler));
   const auto close = [](csh* opened) { cs_close(opened); };
   const std::unique_ptr<csh, decltype(close)> opened(&disassembler, close);
-  check(cs_option(disassembler, CS_OPT_SKIPDATA, CS_OPT_ON));  // what is no instruction, byte by byte
+  check(cs_option(disassembler, CS_OPT_SKIPDATA, CS_OPT_ON));  // goes byte by byte over other data
   const auto release = [](cs_insn* room) { cs_free(room, 1); };
   const std::unique_ptr<cs_insn, decltype(release)> instruction(cs_malloc(disassembler), release);
   if (instruction == nullptr) check(CS_ERR_MEM);

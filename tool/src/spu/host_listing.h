@@ -1,5 +1,5 @@
 #pragma once
-// The instructions of kernels built for the host.
+// Lists the instructions of kernels built for the host.
 
 #include <vector>
 
@@ -8,13 +8,13 @@
 
 namespace softcell::tool {
 
-/// An instruction, as coverage sees it.
+/// An instruction in the form that coverage needs.
 struct CoveredInstruction {
   dma::LocalStoreAddress address;
   bool is_conditional = false;  ///< a branch that may go either way
 };
 
-/// From `begin` to `end`, which lie in the image. @pre Machine::kHost
+/// The instructions from `begin` to `end`, which must be inside the image. @pre Machine::kHost
 /// @throws std::runtime_error  there is no memory for the disassembler.
 std::vector<CoveredInstruction> list_host_instructions(const ls_sim::KernelImage& image,
                                                        dma::LocalStoreAddress begin,

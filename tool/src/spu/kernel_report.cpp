@@ -19,7 +19,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-/// One kind of DMA command. A kind without an amount of its own has no second count.
+/// One kind of DMA command. Kinds that have no amount leave out the second count.
 struct TrafficRow {
   const char* kind;
   std::uint64_t commands = 0;

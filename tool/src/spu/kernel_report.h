@@ -1,5 +1,5 @@
 #pragma once
-// What a run of a kernel was like: for the reader, and for other programs.
+// Reports a run of a kernel, for the reader and for other programs.
 
 #include <nlohmann/json_fwd.hpp>
 #include <span>
@@ -20,10 +20,10 @@ void print_problems(const ls_sim::KernelImage& image, const KernelRun& run);
 /// Findings as an array of objects with rule, kernel, place, message, explanation and count.
 nlohmann::ordered_json to_json(std::span<const ls_sim::Finding> findings);
 
-/// All of a run.
+/// The whole run.
 nlohmann::ordered_json to_json(const ls_sim::KernelImage& image, const KernelRun& run);
 
-/// 1 when an SPE failed, else 3 when there are findings, else 0.
+/// 1 if an SPE failed, else 3 if there are findings, else 0.
 int exit_status(const ls_sim::KernelImage& image, const KernelRun& run);
 
 }  // namespace softcell::tool

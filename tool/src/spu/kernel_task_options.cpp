@@ -49,7 +49,7 @@ void KernelTaskOptions::add_to(CLI::App& verb) {
                       "SPEs that run it, 1 to 6 (default: 1); main's first parameter is the SPE's number"),
       1, dma::kSpeCount)
       ->type_name("SPES");
-  // One buffer behind each: the next word may be IMAGE.
+  // One buffer after each option, because the next word may be IMAGE.
   verb.add_option("--in", in_, "A buffer that the kernel reads, filled from the file")
       ->take_all()
       ->allow_extra_args(false)
@@ -96,7 +96,7 @@ std::string KernelTaskOptions::text() const {
   if (spes_ != 1) text += " --spes " + std::to_string(spes_);
   const auto add = [&](const std::string& option, const std::vector<std::string>& values) {
     for (const std::string& value : values) {
-      // What looks like an option belongs to its own by '=' only.
+      // A value that looks like an option is only taken after '='.
       const bool separate = !value.starts_with('-');
       text += " " + option + (separate ? " " : "=") + quoted(value);
     }

@@ -1,5 +1,5 @@
 #pragma once
-// The options of the command line that say what kernel to run on what.
+// The command line options that state which kernel to run with which data.
 
 #include <CLI/CLI.hpp>
 #include <string>
@@ -13,7 +13,7 @@ class KernelTaskOptions {
  public:
   void add_to(CLI::App& verb);
 
-  /// @throws UsageError  when an option says nothing that is allowed.
+  /// @throws UsageError  an option's value is not allowed.
   KernelTask task() const;
 
   /// Image and options as they were given, quoted for a shell.
@@ -25,7 +25,7 @@ class KernelTaskOptions {
   std::string deadline_;
   int spes_ = 1;
   bool checked_ = false;
-  std::string engine_;  ///< empty: as the image needs
+  std::string engine_;  ///< empty: the one that the image needs
   std::string entry_ = "libspe2";
 };
 

@@ -1,4 +1,4 @@
-// softcell spu debug: a program built for the SPU in a debugger.
+// softcell spu debug: runs a program built for the SPU in a debugger.
 
 #include <fmt/format.h>
 
@@ -28,7 +28,7 @@ int run_spu_debug(const SpuDebugOptions& options) {
                              ": this image is built for the host; gdb debugs it as softcell spu run runs it");
   }
   KernelTask task = options.task;
-  task.deadline = kLongestSession;  // people think slowly
+  task.deadline = kLongestSession;  // because people think slowly
   const InterruptGuard guard;
   const auto interrupted = [&guard] { return guard.interrupted(); };
   GdbConnection connection(options.port);

@@ -1,4 +1,4 @@
-// softcell spu explore: one kernel under many orders of its transfers. A correct one does not care.
+// softcell spu explore: runs one kernel under many orders of its transfers. A correct kernel always has the same outcome.
 
 #include <fmt/format.h>
 
@@ -46,14 +46,14 @@ class Explorer {
                  options_.seeds);
       return kExitInterrupted;
     }
-    report();  // before the file, which perhaps cannot be written
+    report();  // before the file, which may fail to be written
     if (json_ != nullptr) write_json(*json_, document());
     files_.commit();
     return exit_status();
   }
 
  private:
-  /// Where the host's clock stops a run is another place each time: there is nothing to compare.
+  /// Whether the deadline has ended the run: the host's clock ends it at another place each time, so there is nothing to compare.
   bool endless() const {
     return std::ranges::any_of(first_run_.spes, [](const SpeRun& spe) {
       return spe.result.fault && spe.result.fault->rule == dma::Rule::kDeadlineExceeded;
@@ -72,7 +72,7 @@ class Explorer {
                                {.schedule = schedule_of(last_seed()),
                                 .clock = ls_sim::Clock::kSimulated,
                                 .interrupted = [this] { return guard_.interrupted(); }});
-    if (guard_.interrupted()) {  // perhaps within the run
+    if (guard_.interrupted()) {  // perhaps during the run
       --tried_;
     } else if (tried_ == 1) {
       first_run_ = std::move(run);
@@ -145,7 +145,7 @@ class Explorer {
   KernelBuffers buffers_;
   const InterruptGuard guard_;
   OutputFiles files_;
-  base::WholeFile* const json_;  // opened first: what cannot be written is no surprise after a long search
+  base::WholeFile* const json_;  // opened before a long search, as it may not be writable
   std::uint64_t tried_ = 0;
   KernelRun first_run_;
   KernelOutcome first_;
@@ -155,7 +155,7 @@ class Explorer {
 }  // namespace
 
 int run_spu_explore(const SpuExploreOptions& options) {
-  std::vector<NamedFile> files = written_files(options.task);  // by the run that is printed to see it again
+  std::vector<NamedFile> files = written_files(options.task);  // of the printed run that reproduces it
   files.push_back({"--json", options.json});
   check_distinct(files);
   check_kept(read_files(options.task), files);

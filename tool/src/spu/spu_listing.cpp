@@ -1,4 +1,4 @@
-// softcell spu timing and disasm: instructions, the cycles in which they issue, and those that they took in a run.
+// softcell spu timing and disasm: list instructions, the cycles in which they issue, and the cycles that they took in a run.
 
 #include <fmt/format.h>
 
@@ -45,7 +45,7 @@ ls_sim::KernelImage load_program(const SpuListingOptions& options, const char* v
       has_other_build ? ", or --engine interpreter for softcell's own build for the SPU" : ""));
 }
 
-/// "step_body" stands for "step_body(float, Map const&)" as well.
+/// Whether the name is the function's: "step_body" matches "step_body(float, Map const&)" as well.
 bool is_called(const std::string& function, const std::string& name) {
   return function == name || function.substr(0, function.find('(')) == name;
 }
@@ -78,7 +78,7 @@ const char* mark(DualIssue dual) {
   }
 }
 
-/// The stall that took most of an instruction's cycles.
+/// The name of the stall that took most of an instruction's cycles.
 std::string worst_stall(const CycleCounts& counts) {
   const auto most = std::ranges::max_element(counts.stalls);
   if (*most == 0) return {};
@@ -90,7 +90,7 @@ std::string text_of(const ListedInstruction& line) {
   return fmt::format("{:<10}{}", line.mnemonic, line.operands);
 }
 
-/// Sums over the SPEs that have run the program.
+/// The sum over the SPEs that have run the program.
 CycleCounts counts_at(const ls_sim::Timing& timing, dma::LocalStoreAddress address) {
   CycleCounts sum;
   for (int spe = 0; spe < timing.spes(); ++spe) sum += timing.at(spe, address);

@@ -1,4 +1,4 @@
-// softcell spu run: one kernel on the user's own data.
+// softcell spu run: runs one kernel on the user's own data.
 
 #include <fmt/format.h>
 #include <poll.h>
@@ -28,7 +28,7 @@ namespace softcell::tool {
 
 namespace {
 
-/// Of several SPEs, each call prints by itself.
+/// With several SPEs, the output of each call is printed at once.
 ls_sim::HostCalls host_calls_of(const SpuRunOptions& options) {
   const auto printing_to = [](std::FILE* file) {
     return [file](std::string_view text) {
@@ -84,7 +84,7 @@ int run_spu_run(const SpuRunOptions& options) {
                                     .host_calls = options.host_calls ? &host_calls : nullptr});
 
   const int status = exit_status(image, run);
-  // Before files that perhaps cannot be written: what the kernel did is to be known all the same.
+  // This comes before files that may fail to be written, so that the user learns in any case what the kernel did.
   print_statistics(image, run);
   if (timing) print_timing(image, *timing);
   print_problems(image, run);

@@ -11,7 +11,7 @@ namespace {
 
 void append(Words& to, const Words& words) { to.insert(to.end(), words.begin(), words.end()); }
 
-/// The compiler with the flags of a language, up to the headers of the SPU.
+/// The compiler with the flags of a language, including the headers of the SPU.
 Words command_of(Language language, bool checked, const Places& places) {
   Words command{places.compiler};
   if (language == Language::kC) {
@@ -33,7 +33,7 @@ bool has(const Words& words, std::string_view option) {
   return std::ranges::any_of(words, [&](const std::string& word) { return word.starts_with(option); });
 }
 
-/// The preprocessor's options; what it notes of dependencies is about the object.
+/// The preprocessor's options. Dependencies that it writes name the object.
 Words preprocessor_options(const Options& options, const std::filesystem::path& object) {
   Words words = options.preprocessor;
   if (!has(words, "-MD") && !has(words, "-MMD")) return words;
@@ -43,7 +43,7 @@ Words preprocessor_options(const Options& options, const std::filesystem::path& 
   return words;
 }
 
-/// Those of dependencies are left out: they were written for the other flavour.
+/// The options without those of dependencies, which the other flavour has already written.
 Words without_dependencies(const Words& options) {
   Words words;
   for (std::size_t i = 0; i < options.size(); ++i) {
@@ -66,7 +66,7 @@ void say(const Options& options, const Words& command) {
 void compile_flavour(const Input& source, const std::filesystem::path& object, bool checked,
                      const Words& preprocessor, const Options& options, const Places& places,
                      ScratchFolder& scratch) {
-  // What the compiler has to say it says once.
+  // The compiler's messages are only printed for one flavour.
   const auto go = [&](const Words& command) {
     say(options, command);
     if (const int status = run(command, checked); status != 0) throw Failed{status};
@@ -78,7 +78,7 @@ void compile_flavour(const Input& source, const std::filesystem::path& object, b
     append(command, {"-c", source.file, "-o", object.string()});
     return go(command);
   }
-  // Between the preprocessor and the compiler, casts of vectors get the meaning that they have on an SPU.
+  // Between preprocessor and compiler, another program gives casts of vectors the meaning that they have on an SPU.
   const std::string text = scratch.file("source.i"), rewritten = scratch.file("rewritten.i");
   append(command, {"-E", source.file, "-o", text});
   go(command);

@@ -1,6 +1,6 @@
 #pragma once
-// Sources to objects. An object holds both flavours of its code: the checked one, which calls softcell before each load
-// and store, in its section .softcell.checked.
+// Compiles sources to objects. An object contains both flavours of its code; the checked flavour, which calls softcell before each load and
+// store, is in its section .softcell.checked.
 
 #include <filesystem>
 #include <string>
@@ -13,14 +13,14 @@ namespace softcell::toolchain {
 
 inline constexpr const char kCheckedSection[] = ".softcell.checked";
 
-/// Compiles one source. @throws Failed  the compiler has said why.
+/// Compiles one source. @throws Failed  the compiler has printed why.
 void compile(const Input& source, const std::filesystem::path& object, const Options& options,
              const Places& places, ScratchFolder& scratch);
 
-/// -E and -M: what the preprocessor makes of the sources.
+/// -E and -M: runs the preprocessor on the sources.
 void preprocess(const Options& options, const Places& places);
 
-/// Writes a file into a file of objects as a section of its own.
+/// Adds a file to an object as a section of its own.
 void add_section(const std::filesystem::path& object, const std::string& section,
                  const std::filesystem::path& file);
 

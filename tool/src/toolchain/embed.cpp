@@ -19,7 +19,7 @@ bool is_identifier(const std::string& text) {
          std::ranges::all_of(text, [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; });
 }
 
-/// A string of the assembler.
+/// The text as a string of the assembler.
 std::string quoted(const std::string& text) {
   std::string result(1, '"');
   for (const char c : text) {
@@ -46,7 +46,7 @@ void require_program(const std::string& file) {
   if (!is_elf) throw std::invalid_argument(file + " is no ELF file; embed what softcell-spu-gcc has linked");
 }
 
-/// The compiler of the PPU side, which assembles and so knows the host.
+/// The compiler of the PPU side; it assembles, so it knows the host.
 std::string host_compiler() {
   const char* const wanted = std::getenv("SOFTCELL_PPU_CC");
   return wanted != nullptr && *wanted != '\0' ? wanted : "gcc";
@@ -72,7 +72,7 @@ int embedspu(const Words& words) {
   require_program(input);
   ScratchFolder scratch;
   const auto source = scratch.file("program.s");
-  // As softcell_embed_spu_program writes it; the file itself holds its checked flavour and its name.
+  // The same as softcell_embed_spu_program() writes; the file itself contains its checked flavour and its name.
   std::ofstream(source) << ".section .data.rel.ro, \"aw\"\n.balign 8\n.global " << symbol << "\n.type "
                         << symbol << ", @object\n.size " << symbol << ", 40\n"
                         << symbol << ":\n.long 40, 0\n.quad .Limage, 0, 0, .Lname\n"

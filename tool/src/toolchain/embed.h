@@ -1,5 +1,5 @@
 #pragma once
-// SPU programs as objects of the PPU side.
+// Turns SPU programs into objects for the PPU side.
 
 #include "process.h"
 

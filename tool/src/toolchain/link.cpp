@@ -19,14 +19,14 @@ constexpr std::uint32_t kLeastStack = 4096, kMostStack = 0x20000;
 
 void append(Words& to, const Words& words) { to.insert(to.end(), words.begin(), words.end()); }
 
-/// The checked flavour of an object. @return  false: it has none
+/// Extracts the checked flavour of an object. @return  false: the object has none
 bool extract_checked(const std::string& object, const std::filesystem::path& to) {
   const Words command{"objcopy", "--dump-section", std::string(kCheckedSection) + "=" + to.string(), object,
                       "/dev/null"};
   return run(command, true) == 0 && std::filesystem::exists(to);
 }
 
-/// The checked flavours of an archive's members, as an archive.
+/// Makes an archive of the checked flavours of an archive's members.
 bool extract_checked_archive(const std::filesystem::path& archive, const std::filesystem::path& to,
                              ScratchFolder& scratch) {
   const std::filesystem::path members = scratch.file("members");
@@ -42,7 +42,7 @@ bool extract_checked_archive(const std::filesystem::path& archive, const std::fi
   return true;
 }
 
-/// The files with their checked flavours in their place. @return  none: `missing` has none
+/// The files replaced by their checked flavours. @return  none: `missing` has no checked flavour
 Words checked_files(const Words& files, ScratchFolder& scratch, std::string& missing) {
   Words checked;
   for (const std::string& file : files) {
@@ -59,7 +59,7 @@ Words checked_files(const Words& files, ScratchFolder& scratch, std::string& mis
   return checked;
 }
 
-/// One flavour. @param quiet  the linker's messages are dropped. @param budget  of image and stack. @return  the linker's status.
+/// Links one flavour. @param quiet  drops the linker's messages. @param budget  for image and stack. @return  the linker's status.
 int link_flavour(const Words& files, const std::filesystem::path& output, bool checked, std::uint32_t stack,
                  const Options& options, const Places& places, bool quiet,
                  std::uint32_t budget = kLocalStoreBytes) {
@@ -89,7 +89,7 @@ int link_flavour(const Words& files, const std::filesystem::path& output, bool c
   return run(command, quiet);
 }
 
-/// Where the image ends, and what is free begins.
+/// The address at which the image ends and the free space begins.
 std::uint32_t end_of(const std::filesystem::path& image) {
   const std::string symbols = output_of({"nm", image.string()});
   std::istringstream lines(symbols);
@@ -100,13 +100,13 @@ std::uint32_t end_of(const std::filesystem::path& image) {
   throw std::runtime_error(image.string() + " has no symbol _end");
 }
 
-/// What the image leaves free is for the stack and the heap: half for each.
+/// The size of the stack: stack and heap get half each of the space that the image leaves free.
 std::uint32_t stack_beside(const std::filesystem::path& image) {
   const std::uint32_t free = kLocalStoreBytes - std::min(end_of(image), kLocalStoreBytes);
   return std::clamp(free / 2 / 16 * 16, kLeastStack, kMostStack);
 }
 
-/// After a link that has failed: a sentence with numbers if the program is too large. Else the linker says what is wrong.
+/// Call it after a link that has failed. If the program is too large, it says so with numbers; else the linker says what is wrong.
 void refuse_if_too_large(const Words& files, const std::filesystem::path& output, std::uint32_t stack,
                          const Options& options, const Places& places) {
   constexpr std::uint32_t kNoBudget = 0x7FFF'FFFF;
@@ -120,12 +120,12 @@ void refuse_if_too_large(const Words& files, const std::filesystem::path& output
                            std::to_string(kLocalStoreBytes));
 }
 
-/// Links a flavour with as much stack as there is room for. @return  the linker's status.
+/// Links a flavour with the largest stack for which there is room. @return  the linker's status.
 int link_with_stack(const Words& files, const std::filesystem::path& output, bool checked,
                     const Options& options, const Places& places, bool quiet) {
   const std::uint32_t least =
       options.stack_bytes.value_or(kLeastStack) + (checked ? settings::kCheckedStackBytes : 0);
-  // Quiet: what the linker has to say is said once, by the link that follows.
+  // Quiet, because the link that follows prints the linker's messages.
   const int status = link_flavour(files, output, checked, least, options, places, true);
   if (status != 0 && !quiet) refuse_if_too_large(files, output, least, options, places);
   if (status != 0 || options.stack_bytes)

@@ -1,5 +1,5 @@
 #pragma once
-// Objects to a program: an image of a local store, with its checked flavour in a section.
+// Links objects to a program: an image of a local store, with its checked flavour in a section.
 
 #include <filesystem>
 
@@ -9,8 +9,8 @@
 
 namespace softcell::toolchain {
 
-/// Links objects and archives, in order. With `options.relocatable`, to one object.
-/// @throws Failed  the linker has said why.
+/// Links objects and archives, in order; with `options.relocatable` into one object.
+/// @throws Failed  the linker has printed why.
 void link(const Words& files, const std::filesystem::path& output, const Options& options,
           const Places& places, ScratchFolder& scratch);
 

@@ -1,4 +1,4 @@
-// softcell-spu-gcc, -g++, -ld, -ar, ... and softcell-embedspu: one program, which does what its name says.
+// softcell-spu-gcc, -g++, -ld, -ar, ... and softcell-embedspu: one program, whose name determines what it does.
 
 #include <cstdio>
 #include <exception>
@@ -36,7 +36,7 @@ constexpr const char kHelp[] =
     "  SOFTCELL_CXX              another host compiler;  SOFTCELL_QUIET: no notes about options without "
     "meaning\n";
 
-/// Answers what build systems ask compilers. @return  whether it was such a question
+/// Answers the questions that build systems ask compilers. @return  whether the words were such a question
 bool answer_question(const Words& words) {
   if (words.size() != 1) return false;
   if (words[0] == "--version") {
@@ -111,7 +111,7 @@ int run_command(const std::string& command, Words words) {
   if (tool == kTools.end())
     throw std::invalid_argument("call it by one of its names, softcell-spu-gcc for example");
   if (command == "softcell-spu-strip") {
-    // The symbols of a program are few, and softcell reads them; strip leaves both flavours.
+    // A program has few symbols, and softcell reads them, so they stay; strip keeps both flavours.
     words.insert(words.begin(), {"--strip-debug", "--keep-section=.softcell.*"});
     std::erase(words, "-s");
     std::erase(words, "--strip-all");

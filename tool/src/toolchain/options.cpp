@@ -23,13 +23,13 @@ bool starts_with_any(std::string_view text, const Texts&... texts) {
   return (text.starts_with(texts) || ...);
 }
 
-/// Libraries of a Cell toolchain whose functions softcell's own library has, or that there is nothing of to link.
+/// Libraries of a Cell toolchain that need not be linked: softcell's own library has their functions, or they have nothing to link.
 bool is_in_library(std::string_view name) {
   return is_any(name, "c", "m", "gcc", "gloss", "stdc++", "supc++", "misc", "sync", "simdmath", "sputhread",
                 "spuatomic", "spudma", "ea", "profile", "gmath", "spu_timer", "sputimer");
 }
 
-/// Reads the words of a file: they end at spaces, and quotes hold them together. [GCC, @file] documented
+/// Reads the words of a file: they are separated by spaces, and quotes keep spaces within a word. [GCC, @file] documented
 Words words_of_file(const std::string& name) {
   std::ifstream file(name);
   if (!file) throw std::invalid_argument("the file of options " + name + " cannot be read");
@@ -149,7 +149,7 @@ class Parser {
       if (language_ == Language::kC) options_.compiler.push_back("-std=gnu90");
     } else if (is_any(word, "-pipe", "-static", "-O", "-O1", "-O2", "-O3", "-Os", "-pthread", "-s") ||
                starts_with_any(word, "-g", "-mtune=", "-march=", "-mcpu=")) {
-      // How fast a program is and what a debugger knows of it is the same under all of them.
+      // These options do not change a program's speed here, nor what a debugger knows of it.
     } else if (word == "-w" || starts_with_any(word, "-W", "-pedantic")) {
       if (word.starts_with("-Wa,")) {
         options_.meaningless.push_back(word);
@@ -166,7 +166,7 @@ class Parser {
     }
   }
 
-  /// What changes the meaning of a source, and has one here.
+  /// Whether the option changes the meaning of a source, and is supported here.
   static bool is_of_language(std::string_view word) {
     return is_any(word, "-fsigned-char", "-funsigned-char", "-fno-strict-aliasing", "-fstrict-aliasing",
                   "-fwrapv", "-fpermissive", "-fcommon", "-fno-common", "-fgnu89-inline", "-fms-extensions",
@@ -201,7 +201,7 @@ class Parser {
     }
   }
 
-  /// Words of the linker, with commas between them; some take the next as their value.
+  /// Takes linker options that are separated by commas; some use the next word as their value.
   void take_linker_list(std::string_view list) {
     Words words;
     for (std::size_t at = 0; at <= list.size();) {
@@ -272,7 +272,7 @@ class Parser {
   }
 
   void finish() {
-    // From the last, so that the places of the others stay.
+    // From the last to the first, so that the positions of the others do not change.
     for (auto library = libraries_.rbegin(); library != libraries_.rend(); ++library) {
       const auto& [name, place] = *library;
       const auto file = find_library(name);
@@ -305,7 +305,7 @@ class Parser {
   const Language language_;
   std::optional<Language> forced_;
   Words folders_;
-  std::vector<std::pair<std::string, std::size_t>> libraries_;  ///< and before which input they stand
+  std::vector<std::pair<std::string, std::size_t>> libraries_;  ///< with the input that follows it
   Options options_;
 };
 

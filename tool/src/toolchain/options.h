@@ -1,5 +1,5 @@
 #pragma once
-// The command line of an SPU compiler.
+// Parses the command line of an SPU compiler.
 
 #include <cstdint>
 #include <filesystem>
@@ -15,33 +15,33 @@ enum class Language : std::uint8_t { kC, kCxx };
 
 struct Input {
   std::string file;
-  std::optional<Language> language;  ///< none: for the linker
+  std::optional<Language> language;  ///< none: input for the linker
 };
 
-/// How far the compiler is to go.
+/// The last step that the compiler takes.
 enum class Step : std::uint8_t { kDependencies, kPreprocess, kCompile, kLink };
 
 struct Options {
   Step step = Step::kLink;
   std::optional<std::string> output;
-  std::vector<Input> inputs;  ///< in order; libraries of -l among them, as the files that they are
-  Words preprocessor;         ///< -I, -D, -M..., for the first step
-  Words compiler;             ///< warnings and the language
-  Words linker;               ///< -Map and the like, as ld takes them
+  std::vector<Input> inputs;  ///< in order; among them libraries of -l, as the files that were found for them
+  Words preprocessor;         ///< -I, -D, -M..., for the preprocessor
+  Words compiler;             ///< warnings and options of the language
+  Words linker;               ///< -Map and the like, in the form that ld takes
   std::optional<std::uint32_t> stack_bytes;  ///< -Wl,-z,stack-size=BYTES
   bool relocatable = false;                  ///< -r
   bool verbose = false;
   Words meaningless;  ///< options that have no meaning here
 };
 
-/// The options of the compiler. @param language  of standard input and `.c`: softcell-spu-g++ takes C++.
-/// @throws std::invalid_argument  one sentence: a file that cannot be used, an option that cannot be followed.
+/// Parses the options of the compiler. @param language  of standard input and of `.c` files: for softcell-spu-g++ it is C++.
+/// @throws std::invalid_argument  one sentence: a file cannot be used, or an option cannot be followed.
 Options parse_compiler_options(const Words& words, Language language);
 
-/// The options of ld.
+/// Parses the options of ld.
 Options parse_linker_options(const Words& words);
 
-/// Says once that options have no meaning, unless SOFTCELL_QUIET is set.
+/// Prints once which options have no meaning, unless SOFTCELL_QUIET is set.
 void note_meaningless(const std::string& command, const Options& options);
 
 }  // namespace softcell::toolchain

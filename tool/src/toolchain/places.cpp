@@ -8,7 +8,7 @@
 namespace softcell::toolchain {
 namespace {
 
-/// As built or as installed. `name` may be empty.
+/// The path in a build or in an installation. `name` may be empty.
 std::filesystem::path find(const std::filesystem::path& folder, const char* built, const char* installed,
                            const char* name) {
   for (const char* const place : {built, installed}) {
@@ -36,7 +36,7 @@ Places find_places() {
   const auto library = [&](const char* name) {
     return find(folder, settings::kLibraryBuilt, settings::kLibraryInstalled, name);
   };
-  // The program that rewrites casts is built beside the commands.
+  // The program that rewrites casts is built in the same folder as the commands.
   const auto casts = find(folder, ".", settings::kLibraryInstalled, "softcell_vector_casts");
   Places places{.sdk = find(folder, settings::kSdkBuilt, settings::kSdkInstalled, "ls.ld").parent_path(),
                 .library = library("libsoftcell_program_library.a"),

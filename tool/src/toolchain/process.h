@@ -1,5 +1,5 @@
 #pragma once
-// Other programs, and files for a while.
+// Runs other programs, and keeps temporary files.
 
 #include <filesystem>
 #include <string>
@@ -9,19 +9,19 @@ namespace softcell::toolchain {
 
 using Words = std::vector<std::string>;
 
-/// Runs a program and waits for its end. It shares our input, output and standard error.
-/// @param quiet  its standard error is dropped.
+/// Runs a program and waits for its end. It shares our standard input, output and error.
+/// @param quiet  drops its standard error.
 /// @return  its status; 1 if a signal has ended it.
 /// @throws std::runtime_error  it cannot be run; the message names it.
 int run(const Words& command, bool quiet = false);
 
-/// As run(), and gives what it prints on standard output, without the last line's end.
+/// Like run(), but returns what the program prints on standard output, without the last line's end.
 std::string output_of(const Words& command);
 
-/// Puts a program in place of this one. @throws std::runtime_error  it cannot be run.
+/// Replaces this process by another program. @throws std::runtime_error  it cannot be run.
 [[noreturn]] void become(const Words& command);
 
-/// A folder that goes with the object.
+/// A temporary folder, which the destructor removes.
 class ScratchFolder {
  public:
   ScratchFolder();
@@ -37,7 +37,7 @@ class ScratchFolder {
   int files_ = 0;
 };
 
-/// Ends the command with its status: the program that it has called has said why.
+/// Ends the command with this status. The program that it has called has printed why.
 struct Failed {
   int status;
 };

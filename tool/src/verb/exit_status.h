@@ -1,11 +1,11 @@
 #pragma once
-// The exit statuses of a verb that does not end with 0.
+// The exit statuses of a verb other than 0.
 
 #include <stdexcept>
 
 namespace softcell::tool {
 
-/// What was run has failed, or two runs that have to be alike differ.
+/// The run has failed, or two runs that must be equal differ.
 inline constexpr int kExitFailed = 1;
 /// Checked kernels have findings.
 inline constexpr int kExitFindings = 3;

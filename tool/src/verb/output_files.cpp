@@ -20,7 +20,7 @@ namespace {
 
 constexpr const char* kCalled = "standard output";
 
-/// A descriptor of what standard output was. Standard output itself becomes standard error.
+/// Returns a descriptor of the present standard output, and redirects standard output to standard error.
 int take_standard_output() {
   std::fflush(stdout);
   const int taken = ::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);

@@ -22,7 +22,7 @@ std::string progress_line(std::string_view label, std::size_t done, std::size_t 
             elapsed.count());
   const std::size_t percent = total == 0 ? 100 : 100 * done / total, filled = kWidth * percent / 100;
   std::string line = fmt::format("{} [{:=<{}}{:{}}] {:3}%", label, "", filled, "", kWidth - filled, percent);
-  // The first second says too little.
+  // After less than a second the speed is not known well enough.
   if (done == 0 || done == total || elapsed.count() == 0) return line;
   const auto seconds = static_cast<std::uint64_t>(
       static_cast<double>(elapsed.count()) * static_cast<double>(total - done) / static_cast<double>(done) +
@@ -47,7 +47,7 @@ void ProgressBar::show(std::size_t done) {
       std::chrono::duration_cast<std::chrono::seconds>(std::chrono::steady_clock::now() - begin_);
   std::string line = progress_line(label_, done, total_, elapsed);
   if (line == line_) return;
-  // A shorter one covers what was there.
+  // Spaces cover the rest of a longer previous line.
   fmt::print(stderr, "\r{:{}}", line, line_.size());
   std::fflush(stderr);
   line_ = std::move(line);

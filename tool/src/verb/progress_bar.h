@@ -8,14 +8,14 @@
 namespace softcell::tool {
 
 /// The line of a progress bar: "demo 2d [====      ]  40%  1:05 left".
-/// @param done, total  done <= total  @param elapsed  since nothing was done: what is left is taken to go as fast
+/// @param done, total  done <= total  @param elapsed  since the start; the rest is assumed to go on at the same speed
 std::string progress_line(std::string_view label, std::size_t done, std::size_t total,
                           std::chrono::seconds elapsed);
 
-/// A line on standard error that shows how far a long run is and how long it will take, on a terminal and nowhere else.
+/// A line on standard error that shows the progress of a long run and the time that is left. It appears only on a terminal.
 class ProgressBar {
  public:
-  /// @param total  what show() counts up to.  @param quiet  show nothing anywhere.
+  /// @param total  the number that show() counts up to.  @param quiet  never show the line.
   ProgressBar(std::string label, std::size_t total, bool quiet);
   ~ProgressBar();
   ProgressBar(const ProgressBar&) = delete;
@@ -27,7 +27,7 @@ class ProgressBar {
   std::string label_;
   std::size_t total_;
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
-  std::string line_;  ///< that is shown
+  std::string line_;  ///< the shown line
   bool enabled_;
 };
 

@@ -14,8 +14,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Links followed as far as there are files, and to the file that a link stands for when that is still to be
-/// made; what is behind them then is normalised, as `..` of a link is not the folder that the link is in.
+/// The path with its links followed as far as files exist; a link to a file that is still to be made is replaced by that file. Only the
+/// rest is normalised, because `..` of a link is not the folder in which the link is.
 fs::path one_spelling(const fs::path& path) {
   std::error_code error;
   const fs::path absolute = fs::absolute(base::WholeFile::behind_links(path), error);

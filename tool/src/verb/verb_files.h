@@ -18,8 +18,8 @@ struct NamedFile {
   std::optional<std::filesystem::path> file;  ///< none: not given
 };
 
-/// Whether the two paths, however they are spelled, lead to one file. Devices and pipes never count as one file,
-/// because writing to them overwrites nothing.
+/// Whether two paths lead to the same file, however they are spelled. Devices and pipes never count as the same file, because writing to
+/// them overwrites nothing.
 bool is_one_file(const std::filesystem::path& a, const std::filesystem::path& b);
 
 /// Checks that no two of these files are the same.
@@ -27,13 +27,13 @@ bool is_one_file(const std::filesystem::path& a, const std::filesystem::path& b)
 void check_distinct(const std::vector<NamedFile>& files);
 
 /// Checks that no output replaces a file that is read.
-/// @throws UsageError  one would.
+/// @throws UsageError  an output would replace one.
 void check_kept(const std::vector<NamedFile>& read, const std::vector<NamedFile>& written);
 
-/// What is wrong with a document in JSON, without the prefix "[json.exception....] " of the library that has read it.
+/// What is wrong with a JSON document, without the prefix "[json.exception....] " of the library that read it.
 std::string explanation_of(const std::exception& error);
 
-/// Writes the document as all of the file, which the caller commits. @throws std::runtime_error  it cannot be written.
+/// Writes the document as the whole file, which the caller commits. @throws std::runtime_error  it cannot be written.
 void write_json(base::WholeFile& file, const nlohmann::ordered_json& document);
 
 }  // namespace softcell::tool

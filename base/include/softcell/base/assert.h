@@ -1,16 +1,15 @@
 #pragma once
 // SC_ASSERT(condition, "message with {} for each value", values...)
 //
-// States what always holds unless softcell itself, or a caller that breaks a @pre, has a mistake. When the
-// condition is false, the program prints one line to standard error and aborts:
+// States what always holds, unless softcell itself or a caller that breaks a @pre has a mistake. If the condition is false, the program
+// prints one line to standard error and aborts:
 //
 //   arena.cpp:58: void softcell::dma::Arena::free(...): SC_ASSERT(begin < bytes_) does not hold: ...
 //
-// Never for what a user can get wrong by input, and never for a fault of a kernel: those are errors with a
-// sentence. The condition has no side effects.
+// Never use it for wrong input by a user or for a fault of a kernel: these are errors with a message. The condition has no side effects.
 //
-// Assertions are alive where SOFTCELL_ASSERTIONS is defined: in Debug builds and builds with sanitizers,
-// unless the CMake option of that name says otherwise. Elsewhere neither condition nor values are evaluated.
+// Assertions are on if SOFTCELL_ASSERTIONS is defined: in Debug builds and builds with sanitizers, unless the CMake option of that name
+// says otherwise. If they are off, neither condition nor values are evaluated.
 
 #include <charconv>
 #include <concepts>
@@ -26,7 +25,7 @@ namespace softcell::base::assertion {
 /// The message of an assertion with these values. The compiler checks that it has as many {} as values.
 template <class... Values>
 struct Message {
-  /// A literal is a message.
+  /// Makes a message from a literal.
   consteval Message(const char* message) : text(message) {  // NOLINT: hence not explicit
     std::size_t placeholders = 0;
     for (std::size_t at = text.find("{}"); at != text.npos; at = text.find("{}", at + 2)) ++placeholders;
@@ -83,7 +82,7 @@ template <class... Values>
   fail(location, message.text, {text_of(values)...});
 }
 
-/// Compiled where assertions are off, so that their arguments stay correct; never called.
+/// Compiled if assertions are off, so that their arguments stay correct; never called.
 template <class... Values>
 void ignored(bool, Message<std::type_identity_t<Values>...>, const Values&...) {}
 

@@ -1,6 +1,6 @@
 #pragma once
-// Which sanitizer this is compiled with, for what cannot be the same then: SC_ADDRESS_SANITIZER and
-// SC_THREAD_SANITIZER are 0 or 1. GCC says it by macros, Clang by features.
+// Tells which sanitizer the code is compiled with, for code that has to differ then: SC_ADDRESS_SANITIZER and SC_THREAD_SANITIZER are 0 or
+// 1. GCC defines macros, Clang has features.
 
 #if defined(__has_feature)
 #define SC_HAS_FEATURE(feature) __has_feature(feature)

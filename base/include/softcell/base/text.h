@@ -1,6 +1,5 @@
 #pragma once
-// Text for messages: UTF-8, sentences from any source in one line, numbers as messages write them. Any
-// thread.
+// Text for messages: UTF-8, one-line sentences from any source, numbers. Any thread.
 
 #include <cstddef>
 #include <cstdint>
@@ -14,9 +13,8 @@ namespace softcell::base {
 /// @pre  at < text.size()
 std::size_t utf8_length(std::string_view text, std::size_t at);
 
-/// Makes a sentence safe to print, whatever a file has put into it: one line, with control characters and
-/// bytes that are not UTF-8 written as "\x1b". Of a sentence longer than about 2000 bytes it keeps beginning
-/// and end.
+/// Makes a sentence safe to print, whatever a file has put into it: one line, with control characters and bytes that are not UTF-8 written
+/// as "\x1b". Shortens a sentence of more than about 2000 bytes to its beginning and end.
 std::string one_line(std::string_view sentence);
 
 inline constexpr int kMostHexDigits = 16;  // of a 64-bit number
@@ -25,12 +23,12 @@ inline constexpr int kMostHexDigits = 16;  // of a 64-bit number
 std::string hex(std::uint64_t value, int digits = 1);
 
 /// "1 frame", "0 frames", "2 bodies".
-/// @param many  the plural, where it is not `one` with an s.
+/// @param many  the plural, if it is not `one` with an s.
 std::string counted(std::uint64_t count, std::string_view one, std::string_view many = {});
 
-/// A number with as few digits as tell it from all others of its type: "0.1", "1e-08", "nan".
+/// A number with as few digits as distinguish it from all others of its type: "0.1", "1e-08", "nan".
 std::string shortest(float number);
-/// The same; a double that is a float, too, has a float's digits.
+/// The same; a double that is exactly a float gets the float's digits.
 std::string shortest(double number);
 
 /// "1 byte", "16 bytes".

@@ -11,15 +11,14 @@
 
 namespace softcell::base {
 
-/// An atomic file. It writes to a temporary file in the same folder and renames that at the end. So nobody
-/// takes a half-written file for a whole one, and two writers of one file never mix their bytes. A file that
-/// is replaced keeps its permissions, and a symbolic link to it stays a link. Renaming cannot replace a
-/// device or a pipe: WholeFile writes to these directly, and opens them when the first byte is written,
-/// because opening a pipe waits for its reader.
+/// An atomic file. It writes to a temporary file in the same folder and renames that file at the end. So nobody mistakes a half-written
+/// file for a whole one, and two writers of one file never mix their bytes. A file that is replaced keeps its permissions, and a symbolic
+/// link to it stays a link. Renaming cannot replace a device or a pipe: WholeFile writes to these directly, and opens them when the first
+/// byte is written, because opening a pipe waits for its reader.
 ///
 ///   WholeFile file(path);
 ///   file.write(text);
-///   file.commit();  // without it nothing is left
+///   file.commit();  // without it, no file is left
 ///
 /// Every error is a std::runtime_error that names the file and says why it cannot be written. One thread uses
 /// one object.
@@ -28,7 +27,7 @@ class WholeFile {
   /// Opens the temporary file beside `path`; a device or pipe is opened when the first byte is written.
   explicit WholeFile(std::filesystem::path path);
   /// Takes over a stream that is open already, as standard output is: written directly, and closed at the end.
-  /// @param called  what errors call it.
+  /// @param called  the name for error messages.
   WholeFile(std::FILE* stream, std::filesystem::path called);
   ~WholeFile();
   WholeFile(const WholeFile&) = delete;
@@ -44,10 +43,10 @@ class WholeFile {
   /// taken over.
   const std::filesystem::path& written_path() const { return temporary_.empty() ? place_ : temporary_; }
 
-  /// Closes the temporary file and keeps its name. If several files belong together, finish all of them
-  /// before you commit the first: an error such as a full disk shows here.
+  /// Closes the temporary file, which keeps its name. If several files belong together, finish all of them before you commit the first:
+  /// errors such as a full disk occur here.
   void finish();
-  /// Calls finish() if nobody has, and renames the temporary file to the final name. Call it once.
+  /// Calls finish() if it has not been called, and renames the temporary file to the final name. Call it once.
   void commit();
 
   /// Follows symbolic links to the file that they lead to, whether or not it exists; returns any other path
@@ -62,7 +61,7 @@ class WholeFile {
   void discard();
   [[noreturn]] void fail(int error);
 
-  std::filesystem::path path_;       ///< as the caller gave it
+  std::filesystem::path path_;       ///< as passed by the caller
   std::filesystem::path place_;      ///< the path behind links, which is written or replaced
   std::filesystem::path temporary_;  ///< empty: none, because the file is written in place
   std::optional<mode_t> kept_mode_;  ///< the permissions of the file that is replaced

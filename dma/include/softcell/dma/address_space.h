@@ -5,10 +5,10 @@
 //   0x5EA0C0000000  video memory, 256 MB   | buffer | buffer |   free    |  each starts at a line
 //   0x5EA0F0000000  local store of SPE 0, 256 KB, and its registers; those of SPE n are n MB further up
 //
-//   * as on a PS3; an address space of one's own can have from 1 MB to 2816 MB
+//   * as on a PS3; your own address space can have from 1 MB to 2816 MB
 //
-// The bytes lie somewhere else in the host's memory; host pointers belong to the PPU side, effective
-// addresses to the SPEs, and only resolve() leads from one to the other.
+// The bytes lie somewhere else in the host's memory. Host pointers belong to the PPU side, effective addresses to the SPEs, and only
+// resolve() translates one to the other.
 //
 // Main storage may also be the memory of the host program itself (HostProgram). Then effective addresses are
 // the program's own pointers, checked against what the process has mapped:
@@ -45,7 +45,7 @@ class LocalStores;
 /// Which memory a buffer lies in.
 enum class Memory : std::uint8_t { kMain, kVideo };
 
-/// What SPEs may do with a buffer, and what a command needs: a get reads, a put writes.
+/// What SPEs may do with a buffer, or what a command needs: a get reads, a put writes.
 enum class SpeAccess : std::uint8_t { kNone = 0, kRead = 1, kWrite = 2, kReadWrite = 3 };
 
 constexpr bool allows(SpeAccess granted, SpeAccess wanted) {
@@ -59,34 +59,33 @@ struct BufferOptions {
   /// Size of one element in bytes, 1, 2, 4 or 8, for engines that swap the byte order; 0 for elements of
   /// mixed or unknown width.
   std::uint32_t element_bytes = 0;
-  /// In place of element_bytes: the widths of a structure's members, which repeat to the buffer's end. The allocation
-  /// copies it.
+  /// Instead of element_bytes: the widths of a structure's members, which repeat to the buffer's end. The allocation copies it.
   std::span<const ElementRun> record = {};
 };
 
 /// The width of the numbers at an address, for engines that swap the byte order.
 struct ElementWidths {
-  std::uint32_t element_bytes = 0;        ///< of all; 0: bytes, or as `layout` says
-  const ElementLayout* layout = nullptr;  ///< of the buffer, and as long as the buffer
+  std::uint32_t element_bytes = 0;        ///< of all elements; 0: bytes, or as `layout` says
+  const ElementLayout* layout = nullptr;  ///< of the buffer, valid as long as the buffer
   EffectiveAddress begin = {};            ///< of the buffer
 };
 
 /// One buffer as the MFC sees it.
 struct Mapping {
   EffectiveAddress ea = {};
-  /// The buffer's size rounded up to a quadword: otherwise no legal command could move its last bytes.
+  /// The buffer's size rounded up to a quadword: otherwise no legal command could move the last bytes.
   std::uint64_t bytes = 0;
   std::byte* host = nullptr;
   SpeAccess spe_access = SpeAccess::kNone;
   Memory memory = Memory::kMain;
   std::uint32_t element_bytes = 0;
-  const ElementLayout* layout = nullptr;  ///< of elements of several widths
+  const ElementLayout* layout = nullptr;  ///< for elements of several widths
 
   bool contains(EffectiveAddress address) const { return address.value - ea.value < bytes; }
   bool contains(EffectiveAddress address, std::uint64_t size) const {
     return contains(address) && size <= bytes - (address.value - ea.value);
   }
-  /// True if SPEs may access this buffer so.
+  /// True if SPEs may access this buffer in this way.
   bool permits(SpeAccess wanted) const {
     return allows(spe_access, wanted) && (memory != Memory::kVideo || !allows(wanted, SpeAccess::kWrite));
   }
@@ -111,9 +110,9 @@ class AddressSpace {
   /// @throws std::runtime_error     the host has no address range left.
   explicit AddressSpace(std::uint64_t main_memory_bytes = kMainMemoryBytes);
 
-  /// Makes the memory of this process main storage. Such storage has no buffers: allocate() and free() throw.
-  /// It reserves 1 MB of host addresses below 4 GB for each SPE, and handles SIGSEGV and SIGBUS from now on, for
-  /// a transfer whose bytes are unmapped while they move: it ends with the fault ea-not-mapped.
+  /// Makes the memory of this process main storage. Such storage has no buffers: allocate() and free() throw. It reserves 1 MB of host
+  /// addresses below 4 GB for each SPE. From now on it handles SIGSEGV and SIGBUS, for transfers whose bytes are unmapped while they move:
+  /// such a transfer ends with the fault ea-not-mapped.
   /// @throws std::runtime_error  there is no such range left.
   explicit AddressSpace(const HostProgram& options);
   ~AddressSpace();
@@ -141,11 +140,11 @@ class AddressSpace {
   /// checked; null: nobody. It outlives this object. @pre is_host_program()
   void set_allocations(const HostAllocations* allocations);
 
-  /// Where the local store of this SPE lies, mapped or not.
+  /// The address of this SPE's local store, mapped or not.
   /// @pre  0 <= spe, and below 6 or the number of HostProgram.
   EffectiveAddress local_store_ea(int spe) const;
 
-  /// Where the bytes of this SPE's local store have to lie; null: anywhere.
+  /// The host address at which this SPE's local store must lie; null: anywhere.
   std::byte* place_of_local_store(int spe) const;
 
   /// Maps an SPE at local_store_ea(spe): its local store for any access, and its registers Sig_Notify_1,
@@ -172,14 +171,14 @@ class AddressSpace {
   std::variant<std::byte*, Fault> resolve(EffectiveAddress ea, std::uint64_t bytes, SpeAccess wanted) const;
 
   /// The buffer or local store that contains `ea`, if any.
-  /// @param wanted  of a host program's memory, an access that its page permits is looked for.
+  /// @param wanted  in a host program's memory: looks for an access that the page permits.
   std::optional<Mapping> mapping_at(EffectiveAddress ea, SpeAccess wanted = SpeAccess::kNone) const;
 
-  /// The elements of what is at `ea`: of a typed buffer or a register; none for plain bytes, as in local stores and the
-  /// memory of a host program.
+  /// The element widths at `ea`: those of a typed buffer or a register; none for plain bytes, as in local stores and the memory of a host
+  /// program.
   ElementWidths element_widths_at(EffectiveAddress ea) const;
 
-  /// A number that changes whenever a mapping ends. Who keeps copies of mappings must drop them then.
+  /// A number that changes whenever a mapping ends. Code that keeps copies of mappings must drop them then.
   std::uint64_t generation() const {
     const std::uint64_t own = generation_.load(std::memory_order_acquire);
     return is_host_program() ? own + allocations_generation() : own;  // both only grow

@@ -1,5 +1,5 @@
 #pragma once
-// Effective addresses that mean something else to each SPE: those of its own thread group.
+// Effective addresses that differ for each SPE: those of its own thread group.
 //
 //   0xF0000000 + n MB   SPU thread n of the group: its local store, and its registers behind it
 
@@ -11,11 +11,11 @@
 
 namespace softcell::dma {
 
-/// Where one SPE finds the threads of its group. A plain value; without threads it changes no address.
+/// The addresses at which one SPE finds the threads of its group. A plain value; without threads it changes no address.
 ///
-/// A program adds the address of a variable to that of a thread. On the Cell a variable's address counts from the
-/// local store's begin; on a host the pointer holds the place of the SPE's own local store as well. An address with
-/// that place in it means the same as one without, also if the sum was cut to 32 bits.
+/// A program adds the address of a variable to that of a thread. On the Cell, a variable's address is its offset in the local store; on a
+/// host, the pointer also contains the address of the SPE's own local store. An address that contains it means the same as one that does
+/// not, even if the sum was cut to 32 bits.
 /// @source  [lv2, SPU thread mapping; PSL1GHT, sys/spu_thread.h] documented
 class AddressWindow {
  public:

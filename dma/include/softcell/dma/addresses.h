@@ -30,19 +30,18 @@ struct EffectiveAddress {
 
 constexpr EffectiveAddress operator+(EffectiveAddress ea, std::uint64_t bytes) { return {ea.value + bytes}; }
 
-/// The layout of main storage. The low words are those of a PS3 game process (256 MB of XDR, 256 MB of video
-/// memory, SPU threads from 0xF0000000 in steps of 1 MB); the high word is not zero, so that a kernel that
-/// drops MFC_EAH is caught, and the addresses are ones that no host program has mapped, so that a kernel that
-/// follows one as a pointer faults.
+/// The layout of main storage. The low words are those of a PS3 game process (256 MB of XDR, 256 MB of video memory, SPU threads from
+/// 0xF0000000 in steps of 1 MB). The high word is not zero, so that a kernel that drops MFC_EAH is caught. No host program has these
+/// addresses mapped, so a kernel that follows one as a pointer faults.
 inline constexpr EffectiveAddress kMainMemoryBase{0x5EA0'1000'0000};
 inline constexpr std::uint64_t kMainMemoryBytes = 256ull << 20;  // unless an AddressSpace says otherwise
 inline constexpr EffectiveAddress kVideoMemoryBase{0x5EA0'C000'0000};
-/// The room for main memory: up to video memory.
+/// The most main memory: up to video memory.
 inline constexpr std::uint64_t kMaxMainMemoryBytes = kVideoMemoryBase.value - kMainMemoryBase.value;
 inline constexpr std::uint64_t kVideoMemoryBytes = 256ull << 20;
 inline constexpr EffectiveAddress kLocalStoresBase{0x5EA0'F000'0000};
 inline constexpr std::uint64_t kLocalStoreStrideBytes = 1ull << 20;
-/// Where lv2 maps raw SPUs in the memory of a program. [lv2; PSL1GHT, sys/spu.h] documented
+/// The address at which lv2 maps raw SPUs in the memory of a program. [lv2; PSL1GHT, sys/spu.h] documented
 inline constexpr std::uint64_t kRawSpusBase = 0xE000'0000;
 
 /// Effective address of byte 0 of the local store of SPE 0..5. Its registers follow from +0x40000.
@@ -53,8 +52,8 @@ constexpr EffectiveAddress local_store_ea(int spe) {
 /// True if the upper word of `ea` is that of main storage, whether or not anything is allocated there.
 constexpr bool is_effective_address(std::uint64_t ea) { return (ea >> 32) == (kMainMemoryBase.value >> 32); }
 
-/// True for a number of 32 bits that is the low word of an address in main or video memory or in the local stores,
-/// whether or not anything is allocated there: what a 32-bit pointer keeps of an effective address.
+/// True for a 32-bit number that is the low word of an address in main or video memory or in the local stores, whether or not anything is
+/// allocated there: a 32-bit pointer keeps this much of an effective address.
 constexpr bool is_low_word_of_effective_address(std::uint64_t address) {
   const auto in = [&](EffectiveAddress base, std::uint64_t bytes) {
     return address - (base.value & 0xFFFF'FFFFu) < bytes;

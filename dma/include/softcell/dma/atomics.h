@@ -27,7 +27,7 @@ concept AtomicWord = std::integral<T> &&(sizeof(T) == 4 || sizeof(T) == 8);
 /// load() or a std::atomic_ref.
 ///
 /// One thread uses one object. Every address must lie in a buffer and be a multiple of the word's size.
-/// @throws std::invalid_argument  (all members) the address does not.
+/// @throws std::invalid_argument  (all members) the address breaks this.
 /// @source  [PowerPC, lwarx and stwcx.; CBEA, atomic commands] documented
 class Atomics {
  public:

@@ -1,5 +1,5 @@
 #pragma once
-// A typed buffer in emulated memory that frees itself: the PPU side owns in it what SPEs read and write.
+// A typed buffer in emulated memory that frees itself. The PPU side owns it, and SPEs read and write it.
 
 #include <cstddef>
 #include <limits>
@@ -36,8 +36,7 @@ class Buffer {
         (std::is_arithmetic_v<T> || std::is_enum_v<T>)) {
       options.element_bytes = sizeof(T);
     }
-    // A product that does not fit is more than any memory holds; the largest number says so and is refused as
-    // such.
+    // A product that overflows is more than any memory holds; the largest number stands for it and is refused.
     constexpr std::uint64_t kMost = std::numeric_limits<std::uint64_t>::max();
     const std::uint64_t bytes = count > kMost / sizeof(T) ? kMost : count * sizeof(T);
     ea_ = space.allocate(std::move(name), bytes, options);

@@ -1,7 +1,7 @@
 #pragma once
-// The widths of a buffer's numbers, where they are not all the same: what an SPE of the other byte order needs to know.
+// The widths of a buffer's numbers if they are not all the same: an SPE of the other byte order needs them.
 //
-//     constexpr dma::ElementRun kRecord[] = {{16, 8}, {112, 4}};  // two addresses, then 28 words; again and again
+//     constexpr dma::ElementRun kRecord[] = {{16, 8}, {112, 4}};  // two addresses, then 28 words; repeated
 //     dma::Buffer<Job> jobs(memory, "jobs", 24, {.record = kRecord});
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace softcell::dma {
 
-/// Numbers of one width, one behind the other.
+/// Numbers of one width, one after the other.
 struct ElementRun {
   std::uint32_t bytes = 0;          ///< of the run; a multiple of element_bytes
   std::uint32_t element_bytes = 0;  ///< 1, 2, 4 or 8
@@ -23,7 +23,7 @@ class ElementLayout {
   ///                                or end at a multiple of its width in every repetition, a record over 2 GB.
   explicit ElementLayout(std::span<const ElementRun> record);
 
-  /// The run at `offset` bytes from the buffer's begin, from there to its end.
+  /// The run at `offset` bytes from the buffer's begin, and its length from there.
   ElementRun run_at(std::uint64_t offset) const;
 
  private:

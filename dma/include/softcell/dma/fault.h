@@ -1,5 +1,5 @@
 #pragma once
-// A fault: the rule that a kernel broke, where, what was found and what is allowed.
+// A fault: the rule that a kernel broke, the place, what was found and what is allowed.
 
 #include <optional>
 #include <stdexcept>
@@ -48,14 +48,14 @@ struct Fault {
   std::string place = {};                  ///< source file and line, "saxpy.cpp:41"; empty: unknown
   std::optional<MfcCommand> command = {};  ///< set when a DMA command broke the rule
   std::string detail = {};                 ///< what was found and what is allowed; no full stop
-  bool is_of_proxy = false;                ///< of a proxy command, which the PPU side gives, not a kernel
+  bool is_of_proxy = false;                ///< of a proxy command, which the PPU side issues, not a kernel
 
   /// All of it in one line: "SPE 2, kernel skin, skin.cpp:41: ea-alignment: getf tag 3, LSA 0x00400, EA
   /// 0x5EA010000008, 16 bytes: EA is ..."
   std::string message() const;
 };
 
-/// Thrown where bytes move: the host program has unmapped them since the command was issued.
+/// Thrown when bytes are to be moved: the host program has unmapped them since the command was issued.
 class StorageLost : public std::runtime_error {
  public:
   explicit StorageLost(Fault what) : std::runtime_error(what.detail), fault(std::move(what)) {}

@@ -29,8 +29,8 @@ struct ListElement {
     return {(list.ea.value & 0xFFFF'FFFF'0000'0000) | eal};
   }
 
-  /// Local-store address of the element's bytes when the list has reached `cursor`. Less than a quadword has
-  /// the same offset in a quadword as in main storage.
+  /// Local-store address of the element's bytes when the list has reached `cursor`. An element of less than a quadword has the same offset
+  /// in its quadword as in main storage.
   constexpr LocalStoreAddress local_address(LocalStoreAddress cursor) const {
     return size() < kQuadwordBytes ? LocalStoreAddress{quadword_of(cursor.value) | offset_in_quadword(eal)}
                                    : cursor;

@@ -19,7 +19,7 @@
 
 namespace softcell::dma {
 
-/// A legal list command; queue, tags and order are MfcQueue's. Used by the thread of its MFC.
+/// A legal list command; MfcQueue handles its slot, tags and order. Used by the thread of its MFC.
 class ListTransfer {
  public:
   /// A list without elements.

@@ -1,5 +1,5 @@
 #pragma once
-// One SPE as a range of main storage, which other SPEs and the PPU reach by DMA.
+// One SPE as a range of main storage, which other SPEs and the PPU access by DMA.
 
 #include <cstddef>
 #include <cstdint>
@@ -17,13 +17,12 @@ enum class SpeRegister : std::uint32_t {
   kSignal2 = 0x5C00C,
 };
 
-/// The SPE implements it, and the writer calls it: any thread, perhaps with reservation locks held. An
-/// implementation must be short and must not call the address space.
+/// The SPE implements this interface, and the writer calls it: on any thread, perhaps with reservation locks held. An implementation must
+/// be short and must not call the address space.
 ///
-/// Written in one access are: 1, 2, 4 or 8 bytes; each quadword of a transfer within one line; and each
-/// quadword of a longer transfer, if the host's memcpy does so, which it does on x86. So a kernel may poll a
-/// quadword of its local store to which another SPE puts. Several quadwords may arrive in any order unless a
-/// fence or barrier orders their commands.
+/// These are written in one access: 1, 2, 4 or 8 bytes; each quadword of a transfer within one line; and each quadword of a longer
+/// transfer, if the host's memcpy does so, which it does on x86. So a kernel may poll a quadword of its local store to which another SPE
+/// puts. Several quadwords may arrive in any order unless a fence or barrier orders their commands.
 class LocalStorePort {
  public:
   virtual ~LocalStorePort() = default;
@@ -31,8 +30,8 @@ class LocalStorePort {
   /// The local store: kLocalStoreBytes of host memory, aligned to 16, valid as long as the port is mapped.
   virtual std::span<std::byte> local_store() = 0;
 
-  /// Somebody else is about to write to this local store. Called just before the bytes change, so that the
-  /// SPE knows of them before its kernel can read them.
+  /// Somebody else is about to write to this local store. Called just before the bytes change, so that the SPE knows of the write before
+  /// its kernel can read the bytes.
   virtual void on_external_write(LocalStoreAddress lsa, std::uint32_t bytes) = 0;
 
   /// Somebody writes `value` to a register.

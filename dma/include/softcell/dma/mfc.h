@@ -33,8 +33,7 @@
 
 namespace softcell::dma {
 
-/// Only the thread that runs its SPE may call it, unless a function says otherwise. Allocates memory for the
-/// text of faults only.
+/// Only the thread that runs its SPE may call it, unless a function says otherwise. Allocates memory only for the text of faults.
 class Mfc {
  public:
   /// @param local_store    kLocalStoreBytes long; must outlive the MFC, as must `space`.
@@ -49,14 +48,14 @@ class Mfc {
   /// Calls `observer` for every command from now on; null: nobody. It must outlive the MFC or be replaced.
   void set_observer(MfcObserver* observer) { observer_ = observer; }
 
-  /// Which part of the local store may hold instructions: see StoragePort. Without these calls, any part. Any
-  /// thread may call expect_code_below().
+  /// Sets which part of the local store may hold instructions: see StoragePort. Without these calls, any part. Any thread may call
+  /// expect_code_below().
   void confine_code(LocalStoreAddress end) { port_.confine_code(end); }
   void expect_code_below(LocalStoreAddress end) { port_.expect_code_below(end); }
   void expect_code_everywhere() { port_.expect_code_everywhere(); }
   LocalStoreAddress code_end() const { return port_.code_end(); }
 
-  /// Which effective addresses mean something else to this SPE; none without this call.
+  /// Sets the effective addresses that mean something else to this SPE; none without this call.
   void set_window(AddressWindow window) { port_.set_window(std::move(window)); }
 
   /// Declares the byte order of the local store: see StoragePort. Little-endian without this call.
@@ -149,10 +148,10 @@ class Mfc {
   /// @return  nothing, or the fault that prevents it: an element's, or list-stalled-for-ever.
   std::optional<Fault> drain();
 
-  /// Threads of a host program may have stored to the line that this MFC has reserved; the hardware would have
-  /// noticed. If they have, the reservation ends and its listener is called.
+  /// Checks whether threads of a host program have stored to the line that this MFC has reserved, which the hardware would notice. If they
+  /// have, the reservation ends and its listener is called.
   void look_for_host_stores() { port_.look_for_host_stores(); }
-  /// Whether this MFC has a reserved line to which that may happen.
+  /// Whether this MFC has a reserved line that such stores may change.
   bool may_miss_host_stores() const { return port_.may_miss_host_stores(); }
 
   const MfcStatistics& statistics() const { return statistics_; }
@@ -164,15 +163,15 @@ class Mfc {
     std::uint32_t mask;
   };
 
-  /// The command in a slot of the queue; MfcQueue has its order.
+  /// The command in a slot of the queue; MfcQueue holds the order.
   struct QueuedCommand {
-    Transfer transfer;         // of all but lists
+    Transfer transfer;         // of all commands but lists
     std::uint64_t number = 0;  // as passed to the observer
     std::uint64_t due = 0;     // the visit by which it must be complete
-    bool started = false;      // under the random schedule: whether its destination is poisoned by now
+    bool started = false;      // under the random schedule: whether its destination has been poisoned
   };
 
-  // Of issue():
+  // Parts of issue():
   std::variant<Transfer, Fault> transfer_of(const MfcCommand& command, CommandKind kind);
   std::optional<Fault> execute_line_command(const MfcCommand& command);
   std::optional<Fault> enqueue(const MfcCommand& command, CommandKind kind, const Transfer& transfer);
@@ -185,7 +184,7 @@ class Mfc {
   void raise_if_met();
   std::uint32_t complete_tags(std::uint32_t mask) const { return mask & ~queue_.busy_tags(); }
 
-  // Let time pass: for one visit of the SPU; for overdue commands; while the SPU polls.
+  // These let time pass: for one visit of the SPU; for overdue commands; while the SPU polls.
   void pass_a_moment();
   void complete_overdue();
   void answer_poll(SlotSet wanted);

@@ -20,7 +20,7 @@ class MfcObserver {
   /// All bytes of the command have moved.
   virtual void on_complete(std::uint64_t number) = 0;
 
-  /// Called in place of `on_complete` for a putllc whose reservation was lost. Nothing has moved.
+  /// Called instead of `on_complete` for a putllc whose reservation was lost. Nothing has moved.
   virtual void on_reservation_lost(std::uint64_t number) = 0;
 };
 

@@ -1,6 +1,6 @@
 #pragma once
-// The order of queued commands: which of them tag groups, fences and barriers let start. It moves no bytes
-// and does not choose among those that may start.
+// The order of queued commands: which of them may start according to tag groups, fences and barriers. It moves no bytes and does not choose
+// among those that may start.
 
 #include <array>
 #include <bit>
@@ -131,7 +131,7 @@ class MfcQueue {
   static constexpr SlotSet kAllSlots = 0xFFFF;
 
  private:
-  /// Slots are ints.
+  /// An array that is indexed by slots, which are ints.
   template <typename Value>
   class BySlot {
    public:
@@ -160,12 +160,12 @@ class MfcQueue {
   }
 
   SlotSet occupied_ = 0;
-  SlotSet waiting_ = 0;         // those that wait for others
+  SlotSet waiting_ = 0;         // slots that wait for others
   SlotSet barriers_ = 0;        // within their tag
   SlotSet queue_barriers_ = 0;  // of all tags
   std::uint32_t busy_tags_ = 0;
   std::uint64_t next_issue_ = 0;
-  BySlot<SlotSet> waits_for_;  // of an empty slot: nothing
+  BySlot<SlotSet> waits_for_;  // for an empty slot: 0
   BySlot<std::uint8_t> tags_;
   BySlot<std::uint64_t> issued_;
   std::array<SlotSet, kTagCount> groups_{};  // by tag

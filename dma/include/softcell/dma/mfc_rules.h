@@ -18,14 +18,14 @@ namespace softcell::dma {
 ///   get, put, putr        1, 2, 4, 8                both multiples of the size, low four bits equal
 ///                         16 .. 16384               both multiples of 16, as is the size
 ///   their list forms      8 .. 16384, in steps of 8 EA's low half: the list, a multiple of 8 in local store
-///   the line commands     not looked at             both multiples of 128
+///   the line commands     ignored                   both multiples of 128
 ///   sndsig                4                         EA: a Sig_Notify register; LSA's low four bits are equal
 ///   data-cache hints      1 .. 16384                EA: anything
 ///
 /// @param local_stores  where SPE 0 lies in main storage.
-/// @return  nothing, or the first rule broken (of sndsig, its own one first), with the command set.
+/// @return  nothing, or the first broken rule (for sndsig, its own rule first), with the command set.
 /// @note    Pure; any thread.
-/// @source  [CBEA, MFC commands] documented; what is not is marked in rules.def
+/// @source  [CBEA, MFC commands] documented; rules.def marks what is not
 std::optional<Fault> check_command(const MfcCommand& command,
                                    EffectiveAddress local_stores = kLocalStoresBase);
 

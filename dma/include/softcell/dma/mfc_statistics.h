@@ -18,7 +18,7 @@ struct MfcStatistics {
   /// List commands of one kind.
   struct ListTraffic {
     std::uint64_t commands = 0;
-    std::uint64_t elements = 0;  ///< executed so far, those of size 0 too
+    std::uint64_t elements = 0;  ///< executed so far, including those of size 0
     std::uint64_t bytes = 0;     ///< of these elements
     std::uint64_t stalls = 0;    ///< elements that stalled and notified
   };

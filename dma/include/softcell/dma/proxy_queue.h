@@ -19,13 +19,13 @@
 
 namespace softcell::dma {
 
-/// Accepts the commands that an Mfc accepts, except lists and the line commands that answer at a channel
-/// (getllar, putllc, putlluc). It also accepts puts and gets with start, which start the SPU when their bytes
-/// have moved. Its tag groups are its own: its commands are not ordered with those of the SPU's queue.
+/// Accepts the commands that an Mfc accepts, except lists and the line commands that answer at a channel (getllar, putllc, putlluc). It
+/// also accepts puts and gets with start, which start the SPU when their bytes have moved. It has its own tag groups: its commands are not
+/// ordered with those of the SPU's queue.
 ///
-/// Any thread may call it, the SPE's included. As in an Mfc there is no clock: commands move at the calls
-/// below, as the schedule decides, and stay queued for at most Mfc::kMostVisits of them. While the PPU waits
-/// for something that may need these commands, somebody must call visit() or advance().
+/// Any thread may call it, also the SPE's. As in an Mfc there is no clock: commands move at the calls below, as the schedule decides, and
+/// stay queued for at most Mfc::kMostVisits calls. While the PPU waits for something that may need these commands, somebody must call
+/// visit() or advance().
 ///
 /// [CBEA, MFC proxy command queue] documented
 class ProxyQueue : private MfcObserver {
@@ -57,8 +57,8 @@ class ProxyQueue : private MfcObserver {
   std::uint32_t wait_all(std::uint32_t tag_mask);
   std::uint32_t wait_any(std::uint32_t tag_mask);
 
-  /// The fault of a queued command, if a host program has unmapped its bytes since it was issued. All commands
-  /// that were queued then are dropped, and count as complete.
+  /// The fault of a queued command, if a host program has unmapped its bytes since it was issued. All commands queued at that time are
+  /// dropped, and count as complete.
   std::optional<Fault> poll_fault();
 
   /// Number of commands that can be queued without waiting, 0..8 (MFC_QStatus). Time passes.
@@ -88,7 +88,7 @@ class ProxyQueue : private MfcObserver {
 
   std::mutex mutex_;  // guards all below
   Mfc mfc_;
-  std::atomic<int> queued_{0};  // read without the mutex too
+  std::atomic<int> queued_{0};  // also read without the mutex
   bool issuing_start_ = false;
   std::vector<std::uint64_t> starting_;  // the numbers of the queued commands with start
   int starts_due_ = 0;

@@ -42,8 +42,8 @@ class ReservationHolder {
   int place_ = -1;
 };
 
-/// The reservations of one AddressSpace. Thread safe: different holders may call at the same time.
-/// All copies throw StorageLost if the storage is a host program's memory, and it unmaps the bytes meanwhile.
+/// The reservations of one AddressSpace. Thread safe: different holders may call at the same time. If the storage is a host program's
+/// memory, all copies throw StorageLost when the program unmaps the bytes meanwhile.
 ///
 /// Copies within one line and the line commands are atomic with respect to each other and ordered, so that
 /// small gets may poll memory. A longer copy is atomic line by line if somebody has reserved the line, and
@@ -53,11 +53,10 @@ class Reservations {
  public:
   static constexpr int kMaxHolders = 1024;
 
-  /// What the lines belong to. The threads of a host program store to its memory without a word to anybody. So
-  /// there a putllc also fails if the line no longer has the bytes that getllar has read, and it stores the
-  /// quadwords that it changes and no others. If it changes one quadword, it is atomic even against the plain
-  /// stores of host threads; if it changes several, against those before it only. It never notices a store of
-  /// the bytes that were there.
+  /// The memory that the lines belong to. Threads of a host program store to its memory without telling anybody. So there a putllc also
+  /// fails if the line no longer has the bytes that getllar has read, and it stores only the quadwords that it changes. If it changes one
+  /// quadword, it is atomic even against plain stores of host threads; if it changes several, only against stores before it. It never
+  /// notices a store of the same bytes.
   enum class Storage : std::uint8_t { kBuffers, kHostProgram };
 
   /// @param local_stores  called for writes to local stores and registers of SPEs; null: there are none.
@@ -96,11 +95,11 @@ class Reservations {
   /// Ends the holder's reservation, if it has one, without an event.
   void give_up(ReservationHolder& holder);
 
-  /// In the memory of a host program: ends the holder's reservation, and calls its listener, if the line has
-  /// changed since it was reserved. @throws StorageLost
+  /// In the memory of a host program: if the line has changed since it was reserved, ends the holder's reservation and calls its listener.
+  /// @throws StorageLost
   void look_for_host_stores(ReservationHolder& holder);
 
-  /// True if the holder has a reservation that only look_for_host_stores() may find lost.
+  /// True if the holder has a reservation whose loss only look_for_host_stores() may find.
   bool may_miss_host_stores(const ReservationHolder& holder) const;
 
   /// True if the holder has a reservation.

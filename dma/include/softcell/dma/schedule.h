@@ -28,7 +28,7 @@ struct Schedule {
 };
 
 /// Reads "eager", "lazy" or "random:SEED", SEED a decimal number of at most 64 bits.
-/// @throws std::invalid_argument  anything else; the sentence says what is allowed.
+/// @throws std::invalid_argument  anything else; the message says what is allowed.
 Schedule parse_schedule(std::string_view text);
 
 /// The text that parse_schedule() reads back.

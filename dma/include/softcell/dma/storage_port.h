@@ -20,7 +20,7 @@ namespace softcell::dma {
 struct StoragePlace {
   EffectiveAddress ea = {};
   std::byte* host = nullptr;
-  ElementWidths swapped = {};  ///< of the elements whose byte order changes on the way
+  ElementWidths swapped = {};  ///< widths of the elements whose byte order is changed during a copy
 
   bool is_swapped() const { return swapped.element_bytes > 1 || swapped.layout != nullptr; }
   StoragePlace after(std::uint32_t bytes) const { return {ea + bytes, host + bytes, swapped}; }
@@ -28,12 +28,11 @@ struct StoragePlace {
 
 /// Only the thread of its MFC may use it, except for expect_code_below().
 ///
-/// The local store of a program for the SPU is big-endian. Then the elements of typed buffers
-/// (BufferOptions::element_bytes and record) change their byte order on the way, so that the PPU side sees the host's;
-/// all other bytes stay as they are.
+/// The local store of a program for the SPU is big-endian. Then copies change the byte order of the elements of typed buffers
+/// (BufferOptions::element_bytes and record), so that the PPU side sees the host's order; all other bytes stay as they are.
 ///
-/// It knows which part of the local store may hold instructions. It writes those bytes as local_store_bytes.h
-/// requires, and all others in the host's fastest way.
+/// It knows which part of the local store may hold instructions. It writes those bytes as local_store_bytes.h requires, and all others in
+/// the host's fastest way.
 class StoragePort {
  public:
   /// @param local_store  the MFC's local store, kLocalStoreBytes long.
@@ -48,7 +47,7 @@ class StoragePort {
     SC_ASSERT(local_store != nullptr, "an MFC without a local store");
   }
 
-  /// Sets which addresses mean something else to this MFC; none until then.
+  /// Sets the addresses that mean something else to this MFC; none until then.
   void set_window(AddressWindow window) { window_ = std::move(window); }
 
   /// As AddressSpace::resolve().
@@ -92,7 +91,7 @@ class StoragePort {
     }
   }
 
-  /// Declares that all bytes may be instructions, both those that were read so far and later ones.
+  /// Declares that all bytes may be instructions, those that were already read and later ones.
   void expect_code_everywhere() {
     const std::uint32_t known = code_end_.exchange(kLocalStoreBytes, std::memory_order_relaxed);
     if (known == kLocalStoreBytes) return;
@@ -126,7 +125,7 @@ class StoragePort {
   void look_for_host_stores() { reservations_.look_for_host_stores(holder_); }
   bool may_miss_host_stores() const { return reservations_.may_miss_host_stores(holder_); }
 
-  /// Where SPE 0 lies in main storage, and what the address is there.
+  /// The address of SPE 0's local store in main storage, and a translated address.
   EffectiveAddress local_stores() const { return local_stores_; }
   EffectiveAddress translate(EffectiveAddress ea) const { return window_.translate(ea); }
 

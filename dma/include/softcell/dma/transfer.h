@@ -18,7 +18,7 @@
 
 namespace softcell::dma {
 
-/// A legal, translated transfer; queue, tags and order are MfcQueue's. Used by the thread of its MFC.
+/// A legal, translated transfer; MfcQueue handles its slot, tags and order. Used by the thread of its MFC.
 class Transfer {
  public:
   /// A transfer of no bytes.
@@ -47,7 +47,7 @@ class Transfer {
     SC_ASSERT(pieces_left_ == pieces_, "{} of {} pieces have moved", pieces_ - pieces_left_, pieces_);
     if (to_ != nullptr) fill_local_store(to_, kPoison, size_);
   }
-  /// As a float of the SPU about -1.2e17, as an integer about -6e8.
+  /// As a float on the SPU about -1.2e17, as an integer about -6e8.
   static constexpr std::byte kPoison{0xDB};
 
  private:
@@ -70,8 +70,8 @@ class Transfer {
   void move_piece_number(std::uint32_t piece, StoragePort& port);
 
   StoragePlace storage_;
-  std::byte* to_ = nullptr;          // in local store, of a get
-  const std::byte* from_ = nullptr;  // in local store, of a put
+  std::byte* to_ = nullptr;          // in local store, for a get
+  const std::byte* from_ = nullptr;  // in local store, for a put
   std::uint32_t size_ = 0;           // bytes
   std::uint32_t pieces_ = 0;
   std::uint32_t pieces_left_ = 0;

@@ -1,10 +1,10 @@
 #pragma once
-// Threads that wait for SPE contexts and are cancelled meanwhile, by pthread_cancel().
+// Cancellation, by pthread_cancel(), of threads that wait for SPE contexts.
 
 namespace softcell::ls_sim {
 
 /// While an object of this class exists, the waits of its thread in SpeContexts::wait(), SpeContext::run() and SpeContext::resume() are
-/// points at which the thread may be cancelled; else they are none. A run whose thread is cancelled is ended.
+/// cancellation points; otherwise they are not. If the thread is cancelled, its run is ended.
 class MayBeCancelled {
  public:
   MayBeCancelled();
@@ -12,7 +12,7 @@ class MayBeCancelled {
   MayBeCancelled(const MayBeCancelled&) = delete;
   MayBeCancelled& operator=(const MayBeCancelled&) = delete;
 
-  /// Of the thread that asks.
+  /// Whether the calling thread may be cancelled in such waits.
   static bool is_allowed();
 
  private:

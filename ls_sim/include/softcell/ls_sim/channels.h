@@ -16,12 +16,11 @@ enum class Channel : std::uint8_t {
 #undef SC_CHANNEL
 };
 
-/// Of the stop codes 0x2100 to 0x21FF, by which a program calls a function of the PPU side. [libspe2, newlib]
-/// documented
+/// The first of the stop codes 0x2100 to 0x21FF, by which a program calls a function of the PPU side. [libspe2, newlib] documented
 inline constexpr std::uint32_t kAssistedCalls = 0x2100;
 
-/// The result of a channel operation: a value, or the fault that stops the SPU. It fits into two registers,
-/// because every command of a kernel makes one.
+/// The result of a channel operation: a value, or the fault that stops the SPU. It fits into two registers, because every command of a
+/// kernel returns one.
 struct ChannelReply {
   std::uint32_t value = 0;
   std::unique_ptr<dma::Fault> fault;
@@ -42,14 +41,14 @@ class ChannelPort {
   /// call.
   virtual ChannelReply issue(const dma::MfcCommand& command) = 0;
 
-  /// The instruction `sync`: from now on the SPU executes what was written to the local store.
+  /// The instruction `sync`: from now on the SPU executes the instructions that were written to the local store before.
   virtual void sync() = 0;
 
-  /// The SPU has stopped with a code that does not end its program. Returns when the PPU side lets it go on.
-  /// @param assist  of a call of the PPU side (codes 0x2100 to 0x21FF): where the word is that says what for,
-  ///                operation << 24 | the local-store address of the arguments; on an SPU, behind the
+  /// The SPU has stopped with a code that does not end its program. Returns when the PPU side lets it continue.
+  /// @param assist  for a call of the PPU side (codes 0x2100 to 0x21FF): the address of the word that says what is called,
+  ///                operation << 24 | the local-store address of the arguments; on an SPU, it follows the
   ///                instruction. [libspe2, newlib] documented
-  /// @return  whether it goes on; otherwise its run ends with this code.
+  /// @return  whether it continues; otherwise its run ends with this code.
   virtual bool stop(std::uint32_t code, dma::LocalStoreAddress assist) {
     static_cast<void>(code);
     static_cast<void>(assist);

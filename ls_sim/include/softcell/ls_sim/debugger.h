@@ -1,5 +1,5 @@
 #pragma once
-// What runs on an SPE, as a debugger sees it: whole of the interpreter, instruction by instruction of kernels built for the host.
+// The interface of debuggers: they see all of a program on the interpreter, and each instruction of kernels built for the host.
 
 #include <array>
 #include <cstddef>
@@ -10,11 +10,11 @@
 
 namespace softcell::ls_sim {
 
-/// A register in the order of the SPU: byte 0 is the most significant.
+/// A register in the byte order of the SPU: byte 0 is the most significant.
 using RegisterBytes = std::array<std::byte, dma::kQuadwordBytes>;
 inline constexpr int kSpuRegisters = 128;
 
-/// An SPE in the middle of a program, while it stands still.
+/// An SPE in the middle of a program, while it is stopped.
 class DebuggedSpe {
  public:
   virtual ~DebuggedSpe() = default;
@@ -22,21 +22,20 @@ class DebuggedSpe {
   /// @pre 0 <= number < kSpuRegisters
   virtual RegisterBytes read_register(int number) const = 0;
   virtual void write_register(int number, const RegisterBytes& value) = 0;
-  /// Its local store. Instructions that change are executed as they are then.
+  /// Its local store. The SPE executes instructions that are changed there.
   virtual std::span<std::byte> local_store() = 0;
 };
 
-/// Is told of each step of programs built for the SPU (SpeOptions::debugger), by the threads that run the SPEs, with the
-/// host's own arithmetic. A function that does not return keeps the SPE standing; with Interleaving::kTurns all others
-/// stand then, too.
+/// Called for each step of programs built for the SPU (SpeOptions::debugger), by the threads that run the SPEs, with the host's own
+/// arithmetic. While a function does not return, the SPE is stopped; with Interleaving::kTurns all others are stopped, too.
 ///
-/// Of a kernel built for the host it is told of each instruction only, at any address, by a handler of signals: on_instruction()
-/// then may not allocate, lock or throw, and its result means nothing. A kernel takes some thousand times as long.
+/// For a kernel built for the host, only on_instruction() is called, at any address, from a signal handler: it must not allocate, lock or
+/// throw, and its result is ignored. A kernel then takes some thousand times as long.
 class Debugger {
  public:
   virtual ~Debugger() = default;
 
-  /// A run begins. @param state  until on_end()
+  /// A run begins. @param state  valid until on_end()
   virtual void on_begin(int spe, DebuggedSpe& state) = 0;
   virtual void on_end(int spe) = 0;
 

@@ -1,5 +1,5 @@
 #pragma once
-// Engines run the instructions of a kernel: the native engine those of the host, the interpreter those of the SPU.
+// Engines execute the instructions of a kernel: the native engine those of the host, the interpreter those of the SPU.
 
 #include <array>
 #include <chrono>
@@ -20,7 +20,7 @@ class Debugger;
 struct HostCalls;
 class SpeTimer;
 
-/// What starts an SPU program, which decides what its registers hold at first. Each argument is in bytes 0 to 7 of its
+/// The system that starts an SPU program, which determines the first contents of its registers. Each argument is in bytes 0 to 7 of its
 /// register.
 enum class EntryState : std::uint8_t {
   /// $3 to $5 are the arguments, $6 the effective address of the SPE's local store, $1 a stack. [libspe2] second-hand
@@ -29,15 +29,15 @@ enum class EntryState : std::uint8_t {
   kThreadGroup,
 };
 
-/// The 64-bit arguments of a kernel's main. libspe2 passes three with the meanings below. lv2's thread groups pass four
-/// numbers that mean what the program wants. [SPU ABI, libspe2; PSL1GHT, sys/spu.h]
+/// The 64-bit arguments of a kernel's main. libspe2 passes three with the meanings below. lv2's thread groups pass four numbers whose
+/// meaning is up to the program. [SPU ABI, libspe2; PSL1GHT, sys/spu.h]
 struct EntryArguments {
   std::uint64_t spe_id = 0;
   std::uint64_t argp = 0;
   std::uint64_t envp = 0;
   std::uint64_t fourth = 0;                       ///< only for programs that thread groups start
   EntryState entry_state = EntryState::kLibspe2;  ///< only for SPU programs
-  /// The words of three registers, for a main of a native kernel that takes vectors; nothing: they begin with the three numbers.
+  /// The words of three registers, for a native kernel whose main takes vectors; nothing: they begin with the three numbers.
   std::optional<std::array<std::uint32_t, 12>> registers = {};
 };
 
@@ -106,7 +106,7 @@ class AccessObserver {
   virtual void on_instruction(const ExecutedInstruction&) {}
   /// The undefined bits of the quadword at this address.
   virtual UndefinedBits undefined_bits(dma::LocalStoreAddress) { return {}; }
-  /// The host has written there, in a call that it serves.
+  /// The host has written to this range, in a call that it serves.
   virtual void on_host_write(dma::LocalStoreAddress, std::uint32_t) {}
 };
 
@@ -147,7 +147,7 @@ class Engine {
   virtual RunResult run(const EntryArguments& arguments, ChannelPort& channels,
                         AccessObserver* accesses = nullptr, JobObserver* jobs = nullptr) = 0;
 
-  /// Where the kernel is: an address within its last channel operation, or the instruction that faulted.
+  /// The kernel's position: an address within its last channel operation, or the instruction that faulted.
   virtual dma::LocalStoreAddress position() const = 0;
 
   /// The kernel's stack pointer before its last channel operation.
@@ -159,11 +159,11 @@ class Engine {
   /// The most stack, in bytes, that any run since load() used: the part that no longer has the fill pattern.
   virtual std::uint32_t stack_high_water() const = 0;
 
-  /// SPU instructions executed since the engine was made. 0 if it does not count them, as the native one.
+  /// SPU instructions executed since the engine was made. 0 if it does not count them; the native one does not.
   virtual std::uint64_t instructions() const { return 0; }
 };
 
-/// What a native engine works with. Whatever it points to must outlive the engine.
+/// Options of a native engine. All objects that it points to must outlive the engine.
 struct NativeOptions {
   Debugger* debugger = nullptr;  ///< its on_instruction() is called before each instruction; may be null
   int spe = 0;                   ///< the SPE's number, for the debugger
@@ -173,7 +173,7 @@ struct NativeOptions {
 /// @throws std::runtime_error  the processor lacks AVX2 or FMA.
 std::unique_ptr<Engine> make_native_engine(LocalStore& local_store, const NativeOptions& options = {});
 
-/// What an interpreter works with. Whatever it points to must outlive the engine.
+/// Options of an interpreter. All objects that it points to must outlive the engine.
 struct InterpreterOptions {
   const HostCalls* host_calls = nullptr;  ///< the calls that the host serves for programs; null: none
   SpeTimer* timer = nullptr;              ///< times the instructions; null: they are not timed
@@ -183,7 +183,7 @@ struct InterpreterOptions {
 };
 
 /// Makes the engine for programs built for the SPU (load_spu_program()).
-/// @param local_store_ea  of this SPE, which a program gets from libspe2.
+/// @param local_store_ea  of this SPE; programs started by libspe2 get it.
 /// @throws std::runtime_error  the processor lacks AVX2 or FMA.
 std::unique_ptr<Engine> make_interpreter_engine(LocalStore& local_store, dma::EffectiveAddress local_store_ea,
                                                 const InterpreterOptions& options = {});

@@ -29,7 +29,7 @@ class Findings {
   /// threads.
   std::vector<Finding> list() const;
   bool empty() const;
-  /// Of list().
+  /// The number of findings in list().
   std::size_t size() const;
 
  private:

@@ -13,8 +13,8 @@
 
 namespace softcell::ls_sim {
 
-/// Bytes at the bottom of every local store that belong to the emulator: the environment through which a
-/// kernel on the host engine reaches its channels. An SPU program linked at 0x80 leaves them free as well.
+/// Bytes at the bottom of every local store that belong to the emulator: the environment through which a kernel on the native engine
+/// reaches its channels. An SPU program linked at 0x80 leaves them free as well.
 inline constexpr std::uint32_t kEnvironmentBytes = 128;
 
 /// Sizes of an image in bytes, and its declared limits.
@@ -35,7 +35,7 @@ struct ImageObject {
   std::uint32_t bytes = 0;
 };
 
-/// Whose instructions an image has, and so which engine runs it.
+/// The machine whose instructions an image has, which decides the engine that runs it.
 enum class Machine : std::uint8_t {
   kHost,  ///< the host's: made by softcell_add_spu_kernel
   kSpu,   ///< the SPU's: an executable of a real SPU compiler
@@ -59,8 +59,8 @@ struct KernelImage {
   ImageSizes sizes;
   /// A program that is loaded whole, with a heap between its bss and its stack.
   bool program = false;
-  /// Of a program: local-store addresses of words that hold an address in it, to which the place of the local
-  /// store on the host is added. An image that travels by DMA has none.
+  /// For a program: local-store addresses of words that hold an address in the program; the address of the local store on the host is added
+  /// to them. An image that is moved by DMA has none.
   std::vector<dma::LocalStoreAddress> relocations;
   std::vector<ImageObject> objects;                   ///< in order of address
   std::vector<ImageObject> functions;                 ///< in order of address
@@ -75,19 +75,19 @@ struct KernelImage {
 ///                             store, segments that overlap, an entry outside the text.
 KernelImage load_image(std::string_view name, std::span<const std::byte> elf);
 
-/// The bytes of a section of such a file; none if there is no such section, or it is no such file. softcell-spu-gcc
-/// puts the checked flavour of a program into its section .softcell.checked, and its name into .softcell.name.
+/// The bytes of a section of such a file; none if there is no such section, or the file is another one. softcell-spu-gcc puts the checked
+/// build of a program into its section .softcell.checked, and its name into .softcell.name.
 std::span<const std::byte> image_section(std::span<const std::byte> elf, std::string_view section);
 
-/// True if the bytes begin as an ELF file for the SPU does: 32 bits, big-endian, machine 23.
+/// True if the bytes begin like an ELF file for the SPU: 32 bits, big-endian, machine 23.
 bool is_spu_program(std::span<const std::byte> elf);
 
-/// Reads an executable that a compiler for the SPU has made, for the interpreter. Its segments may lie anywhere in the
-/// local store; what is left above them is its stack, which starts where its own start-up code or the loader puts it.
+/// Reads an executable that a compiler for the SPU has made, for the interpreter. Its segments may lie anywhere in the local store; the
+/// bytes above them are for its stack, which begins where its start-up code or the loader puts it.
 /// Any thread.
 /// @throws std::runtime_error  with the program's name and the reason: not ELF, another machine or class, not linked,
 ///                             truncated, nothing to load, overlays, segments that overlap or leave the local store,
-///                             an entry outside what is loaded.
+///                             an entry outside the loaded bytes.
 /// @source  [GNU binutils, libspe2's loader] second-hand
 KernelImage load_spu_program(std::string_view name, std::span<const std::byte> elf);
 

@@ -9,11 +9,10 @@
 
 namespace softcell::ls_sim {
 
-/// 256 KB of readable, writable and executable memory, below 4 GB, so that a kernel's pointers have the 32 bits
-/// that they have on an SPU. It is aligned to 256 KB, so that the low 18 bits of a pointer into it are the
-/// local-store address. On both sides lie 256 KB of inaccessible pages, so that a
-/// kernel that leaves the local store faults. Not copyable, not movable. Any thread may create one; its bytes
-/// belong to the SPE that runs.
+/// 256 KB of readable, writable and executable memory, below 4 GB, so that a kernel's pointers have 32 bits as on an SPU. It is aligned to
+/// 256 KB, so that the low 18 bits of a pointer into it are the local-store address. On both sides lie 256 KB of inaccessible pages, so
+/// that a kernel that leaves the local store faults. Not copyable, not movable. Any thread may create one; its bytes belong to the SPE that
+/// runs.
 class LocalStore {
  public:
   static constexpr std::uint32_t kGuardBytes = dma::kLocalStoreBytes;
@@ -21,7 +20,7 @@ class LocalStore {
   /// @throws std::runtime_error  the host refuses such memory, or has no room for it below 4 GB.
   LocalStore() : LocalStore(nullptr) {}
 
-  /// @param place  where it is to lie, in addresses that somebody keeps for it and for what lies on both sides;
+  /// @param place  its address, in a range that the caller reserves for it and for the pages on both sides;
   ///               null: anywhere.
   explicit LocalStore(std::byte* place);
   ~LocalStore();
@@ -34,7 +33,7 @@ class LocalStore {
  private:
   void make_accessible();
 
-  void* mapping_ = nullptr;  ///< null: `base_` lies where others keep the addresses
+  void* mapping_ = nullptr;  ///< null: the caller has reserved the addresses of `base_`
   std::byte* base_ = nullptr;
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// From an instruction of an image to the line of its source.
+// Finds the source line of an instruction of an image.
 
 #include <memory>
 #include <string>
@@ -11,15 +11,14 @@ namespace softcell::ls_sim {
 
 /// A line of a source file.
 struct SourcePlace {
-  std::string file;  ///< as the compiler was given it; empty: not known
+  std::string file;  ///< as passed to the compiler; empty: not known
   int line = 0;
 };
 
 /// Reads the DWARF line table of an image. One thread at a time.
 class SourceLines {
  public:
-  /// Of an image without debug information, every place is empty. Keeps the image's file alive, not the
-  /// image.
+  /// For an image without debug information, every place is empty. Keeps the image's file alive, not the image.
   explicit SourceLines(const KernelImage& image);
   ~SourceLines();
   SourceLines(const SourceLines&) = delete;

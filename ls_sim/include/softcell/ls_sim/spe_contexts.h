@@ -1,6 +1,6 @@
 #pragma once
-// SPE contexts, as an operating system gives them to a program: each has a local store, an MFC, mailboxes and
-// signals of its own, is made and destroyed one by one, and runs while a thread of the program waits for it.
+// SPE contexts, as an operating system provides them to a program: each has its own local store, MFC, mailboxes and signals, is created and
+// destroyed separately, and runs while a thread of the program waits for it.
 //
 //   SpeContexts contexts(memory, {.spes = 256});
 //   auto context = contexts.create();
@@ -8,9 +8,8 @@
 //   ContextStop stop = context->run({.argp = reinterpret_cast<std::uint64_t>(&data)});
 //   while (stop.goes_on) stop = context->resume();   // it has stopped to ask for something
 //
-// All contexts that run do so at the same time, on threads of their own: the host's scheduler shares its
-// processors among them, as the console's shares its SPEs. So a context always gets on, however many there
-// are, and none waits for another's end.
+// All running contexts run at the same time, on threads of their own: the host's scheduler shares its processors among them, as the
+// console's shares its SPEs. So every context makes progress, however many there are, and none waits until another one ends.
 
 #include <chrono>
 #include <cstdint>
@@ -31,43 +30,43 @@ namespace softcell::ls_sim {
 /// Why a context has stopped.
 struct ContextStop {
   RunResult result;
-  bool goes_on = false;  ///< resume() continues behind the stop
-  /// Of a stop that calls the PPU side (0x2100 to 0x21FF): as ChannelPort::stop().
+  bool goes_on = false;  ///< resume() continues after the stop
+  /// For a stop that calls the PPU side (0x2100 to 0x21FF): as ChannelPort::stop().
   dma::LocalStoreAddress assist = {};
-  /// Where it would continue; also an address within a fault's instruction.
+  /// The address at which it would continue; or an address within a faulting instruction.
   dma::LocalStoreAddress next = {};
 };
 
-/// What a context's mailboxes hold, and whether it runs.
+/// The contents of a context's mailboxes, and whether it runs.
 struct ContextState {
   std::uint32_t out_mbox = 0, out_intr_mbox = 0;  ///< values to be read
   std::uint32_t in_mbox_free = 0;                 ///< values that can be written
   bool runs = false;
-  bool has_begun = false;  ///< the last run has come to an operation of a channel
+  bool has_begun = false;  ///< the last run has reached a channel operation
 };
 
-/// Any thread; run() and resume() are called by one at a time.
+/// Any thread; only one at a time may call run() and resume().
 class SpeContext {
  public:
-  /// Ends a run that has stopped and could go on. @pre no thread is in a function of the context
+  /// Ends a run that has stopped and could continue. @pre no thread is in a function of the context
   virtual ~SpeContext() = default;
 
-  /// 0 and up; of a context that was destroyed, another may get the number.
+  /// 0 and up; after a context is destroyed, another one may get its number.
   virtual int number() const = 0;
 
-  /// Loads an image; what had stopped does not go on.
+  /// Loads an image; a stopped run cannot continue afterwards.
   /// @throws std::logic_error  the context runs.
   virtual void load(std::shared_ptr<const KernelImage> image) = 0;
 
-  /// Runs the loaded image from its entry to its next stop, and waits for that.
+  /// Runs the loaded image from its entry to its next stop, and waits for the stop.
   /// @throws std::logic_error  the context runs, or nothing was loaded.
   /// @throws std::runtime_error  the host has no thread left.
   virtual ContextStop run(const EntryArguments& arguments) = 0;
 
-  /// Continues behind the last stop. @throws std::logic_error  the context has not stopped so.
+  /// Continues after the last stop. @throws std::logic_error  the context has no stop after which it could continue.
   virtual ContextStop resume() = 0;
 
-  /// Ends a run that has stopped and could go on; its statistics are counted then.
+  /// Ends a run that has stopped and could continue; its statistics are counted then.
   /// @throws std::logic_error  the context runs.
   virtual void give_up() = 0;
 
@@ -76,7 +75,7 @@ class SpeContext {
 
   virtual ProblemState& problem_state() = 0;
 
-  /// Sets which effective addresses mean something else to this context. @throws std::logic_error  it runs.
+  /// Sets the effective addresses that mean something else to this context. @throws std::logic_error  it runs.
   virtual void set_window(dma::AddressWindow window) = 0;
 
   /// The state at this moment.
@@ -88,7 +87,7 @@ class SpeContext {
   /// Moves all bytes of proxy commands.
   virtual void move_proxy() = 0;
 
-  /// Waits until at least one of the tags is complete. @return  those that are.
+  /// Waits until at least one of the tags is complete. @return  the complete tags.
   virtual std::uint32_t wait_any_proxy(std::uint32_t tag_mask) = 0;
 
   /// The fault of a proxy command that could not move its bytes; each once.
@@ -101,7 +100,7 @@ class SpeContext {
 /// The contexts of one program. Any thread. Contexts must not outlive it.
 class SpeContexts {
  public:
-  /// @param options  `spes` is how many contexts there may be at a time. A deadline of zero: none.
+  /// @param options  `spes` is the most contexts that may exist at a time. A deadline of zero: none.
   /// @throws std::invalid_argument  options out of range, or more contexts than `memory` has room for.
   SpeContexts(dma::AddressSpace& memory, const SpeOptions& options);
   ~SpeContexts();
@@ -112,14 +111,14 @@ class SpeContexts {
   /// @throws std::runtime_error  the host lacks AVX2 or FMA, or memory.
   std::unique_ptr<SpeContext> create();
 
-  /// Sleeps until `ready` returns true, which is called when a mailbox or the state of a context may have
-  /// changed; it may call SpeContext::state_in_wait() and nothing else of this library.
-  /// @param until  nothing: for ever.
+  /// Sleeps until `ready` returns true. `ready` is called when a mailbox or the state of a context may have changed; it may call
+  /// SpeContext::state_in_wait() and nothing else of this library.
+  /// @param until  nothing: no time limit.
   /// @return  the last answer of `ready`.
   bool wait(const std::function<bool()>& ready,
             std::optional<std::chrono::steady_clock::time_point> until = {});
 
-  /// Has all waits look at their condition again, for something that they depend on besides.
+  /// Makes all waits check their condition again, for example because something else has changed.
   void wake();
 
   /// Whether no context runs; for a condition of wait() only.

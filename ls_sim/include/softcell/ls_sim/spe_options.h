@@ -1,5 +1,5 @@
 #pragma once
-// How SPEs run, in a SpeGroup and in a job system.
+// Options for running SPEs, in a SpeGroup and in a job system.
 
 #include <chrono>
 #include <cstdint>
@@ -21,15 +21,15 @@ enum class Clock : std::uint8_t {
   kSimulated,  ///< advances with each channel operation, so that a run is the same every time
 };
 
-/// How SPEs run beside each other.
+/// How SPEs run relative to each other.
 enum class Interleaving : std::uint8_t {
   /// All at once, each on a thread of the host.
   kFree,
   /// One at a time. At a channel operation the turn may pass to another SPE, drawn from the schedule's seed,
   /// so that runs of several SPEs are reproducible.
   kTurns,
-  /// One at a time, and always the one whose simulated clock is behind, so that what SPEs share is used in the order
-  /// of time. Needs SpeOptions::timing.
+  /// One at a time, and always the one whose simulated clock is behind the others, so that shared resources are used in the order of time.
+  /// Needs SpeOptions::timing.
   kByTime,
 };
 
@@ -37,25 +37,26 @@ enum class Interleaving : std::uint8_t {
 struct SpeOptions {
   int spes = dma::kSpeCount;  ///< 1..6
   dma::Schedule schedule{};
-  std::chrono::milliseconds deadline{10'000};  ///< for one run; one that takes longer is stopped with a fault
+  std::chrono::milliseconds deadline{10'000};  ///< for one run; a longer run is stopped with a fault
   Clock clock = Clock::kHost;
   Interleaving interleaving = Interleaving::kFree;
   bool measure_stack = false;  ///< scan the stack after each run
-  bool reload_always = false;  ///< copy the image in before every run, so that bss starts as zero
-  /// Where checked images report their findings; then images that are not checked are refused. Null: nothing
-  /// is checked. It outlives the SPEs.
+  bool reload_always = false;  ///< copy the image before every run, so that bss starts as zero
+  /// Checked images report their findings here; images that are not checked are refused then. Null: nothing is checked. It must outlive the
+  /// SPEs.
   Findings* findings = nullptr;
-  /// The calls that the host serves for programs built for the SPU (host_calls.h). Null: none. It outlives the SPEs.
+  /// The calls that the host serves for programs built for the SPU (host_calls.h). Null: none. It must outlive the SPEs.
   const HostCalls* host_calls = nullptr;
-  /// Collects cycles: for programs built for the SPU by the model of its pipelines, for all programs by the model of transfers. Needs
-  /// Clock::kSimulated and Interleaving::kByTime. Null: nothing is timed. It outlives the SPEs.
+  /// Collects cycles: for programs built for the SPU with the model of its pipelines, for all programs with the model of transfers. Needs
+  /// Clock::kSimulated and Interleaving::kByTime. Null: nothing is timed. It must outlive the SPEs.
   Timing* timing = nullptr;
-  /// Called before each instruction (debugger.h). Programs built for the SPU are not timed then. Null: no debugger. It outlives the SPEs.
+  /// Called before each instruction (debugger.h). Programs built for the SPU are not timed then. Null: no debugger. It must outlive the
+  /// SPEs.
   Debugger* debugger = nullptr;
-  Trace* trace = nullptr;  ///< null: nothing is recorded. It outlives the SPEs
+  Trace* trace = nullptr;  ///< null: nothing is recorded. It must outlive the SPEs
 };
 
-/// Sets options so that SPEs run by the model of time. @param timing  if null, the options do not change
+/// Sets options so that SPEs run by the timing model. @param timing  if null, the options do not change
 inline void time_by(Timing* timing, SpeOptions& options) {
   if (timing == nullptr) return;
   options.timing = timing;

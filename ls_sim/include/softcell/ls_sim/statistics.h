@@ -9,7 +9,7 @@
 
 namespace softcell::ls_sim {
 
-/// Channel operations that had to wait.
+/// The channel operations that had to wait.
 struct ChannelWaits {
   std::uint64_t count = 0;
   std::chrono::nanoseconds time{0};

@@ -1,6 +1,6 @@
 #pragma once
-// What the timing model of the interpreter says: cycles of programs built for the SPU, instruction by instruction,
-// and of their transfers. docs/guide/timing.md explains the figures, docs/reference/timing.md the model.
+// The results of the interpreter's timing model: cycles of programs built for the SPU, instruction by instruction, and of their transfers.
+// docs/guide/timing.md explains the figures, docs/reference/timing.md the model.
 //
 //   Timing timing(2);
 //   SpeGroup spes(memory, {.spes = 2, .interleaving = Interleaving::kByTime, .timing = &timing});
@@ -24,9 +24,9 @@ namespace softcell::ls_sim {
 /// Why no instruction issued in a cycle.
 enum class Stall : std::uint8_t {
   kDependency,       ///< on the result of an earlier instruction
-  kBranchMiss,       ///< execution went on elsewhere than predicted
+  kBranchMiss,       ///< execution continued elsewhere than predicted
   kHintTarget,       ///< a hint came too late before its branch
-  kFetch,            ///< the next line of instructions was not there
+  kFetch,            ///< the next line of instructions was not fetched yet
   kFloatUnit,        ///< single precision right after a multiply or a conversion
   kDoublePrecision,  ///< after an instruction in double precision
   kLocalStorePort,   ///< a transfer used the local store
@@ -41,8 +41,8 @@ inline constexpr std::size_t kStalls = 11;
 std::string_view name(Stall stall);
 std::string_view json_name(Stall stall);
 
-/// Sums over instructions. Each cycle belongs to one instruction: that which issued in it, the first of a pair, or that
-/// which could not.
+/// Sums over instructions. Each cycle belongs to one instruction: the one that issued in it, the first of a pair, or the one that could not
+/// issue.
 struct CycleCounts {
   std::uint64_t instructions = 0;
   std::uint64_t cycles = 0;
@@ -53,7 +53,7 @@ struct CycleCounts {
   std::uint64_t stalled() const;
   /// Cycles per instruction; 0 without instructions.
   double cycles_per_instruction() const;
-  /// Of the cycles in which anything issued, the share in which two did: 0..1.
+  /// The share of cycles with any issue in which two instructions issued: 0..1.
   double dual_issue_share() const;
   CycleCounts& operator+=(const CycleCounts& other);
   CycleCounts& operator-=(const CycleCounts& other);  ///< @pre `other` is of an earlier moment
@@ -79,14 +79,14 @@ struct TransferCounts {
   std::uint64_t tag_waits = 0, queue_waits = 0, other_waits = 0;  ///< channel operations that waited
 };
 
-/// What one function of a program took, without the functions that it calls.
+/// The cycles of one function of a program, without the functions that it calls.
 struct FunctionCycles {
-  std::string name;  ///< empty: what no symbol covers
+  std::string name;  ///< empty: code that no symbol covers
   dma::LocalStoreAddress begin;
   CycleCounts counts;
 };
 
-/// What the jobs of one kernel took that a resident kernel has called.
+/// The cycles of the jobs of one kernel that a resident kernel has called.
 struct KernelCycles {
   std::string kernel = {};
   std::uint64_t jobs = 0;
@@ -97,8 +97,8 @@ struct KernelCycles {
 class SpeTimer;
 class ElementInterconnect;
 
-/// Collects the cycles of up to six SPEs, from its construction on. Read it when the SPEs have stopped, or sleep as
-/// SpeGroup::wait_until_idle() leaves them.
+/// Collects the cycles of up to six SPEs, from its construction on. Read it when the SPEs have stopped, or sleep after
+/// SpeGroup::wait_until_idle().
 class Timing {
  public:
   /// @param spes  1..6
@@ -111,22 +111,22 @@ class Timing {
   const TimingParameters& parameters() const { return parameters_; }
 
   // @pre 0 <= spe < spes()
-  /// Of programs built for the SPU, and of kernels built for the host, of which the waits are known and no instructions.
+  /// For programs built for the SPU, and for kernels built for the host, of which only waits are known, not instructions.
   CycleCounts total(int spe) const;
   PipelineCounts pipeline(int spe) const;
   TransferCounts transfers(int spe) const;
-  /// The SPE's clock: cycles since the construction, waits for others before its runs included.
+  /// The SPE's clock: cycles since the construction, including waits for others before its runs.
   std::uint64_t now(int spe) const;
-  /// The clock that is farthest.
+  /// The clock of the SPE that is farthest ahead.
   std::uint64_t now() const;
-  /// Of all SPEs together, in the order of names.
+  /// For all SPEs together, in the order of names.
   std::vector<KernelCycles> by_kernel() const;
-  /// Of the instruction at this address, whatever program was there.
+  /// For the instruction at this address, whatever program was there.
   CycleCounts at(int spe, dma::LocalStoreAddress instruction) const;
-  /// By function, the one with the most cycles first. @param image  what has run.
+  /// By function, the one with the most cycles first. @param image  the image that has run.
   std::vector<FunctionCycles> by_function(int spe, const KernelImage& image) const;
 
-  /// Of the emulator: for the SPE's own thread.
+  /// Internal to the emulator: for the SPE's own thread.
   SpeTimer& timer(int spe);
 
  private:

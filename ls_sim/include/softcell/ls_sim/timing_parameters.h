@@ -10,7 +10,7 @@ namespace softcell::ls_sim {
 /// Cycles of an SPU's clock. [CBEA] documented
 inline constexpr std::uint64_t kCyclesPerSecond = 3'200'000'000;
 
-/// docs/reference/timing.md says what each is and how sure it is.
+/// docs/reference/timing.md explains each parameter and how sure its value is.
 struct TimingParameters {
 #define SC_TIMING_PARAMETER(name, value, unit, confidence, source, meaning) std::uint32_t name = (value);
 #include "softcell/ls_sim/timing_parameters.def"

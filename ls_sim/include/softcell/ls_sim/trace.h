@@ -18,12 +18,12 @@ class WholeFile;
 
 namespace softcell::ls_sim {
 
-/// Nanoseconds of the clock of the trace.
+/// Nanoseconds by the trace's clock.
 using TraceTime = std::int64_t;
 /// The time now by the host's clock. Any thread.
 TraceTime trace_now();
 
-/// What the times of a trace are of: the host's steady clock, or the SPEs' simulated clocks (SpeOptions::timing).
+/// The clock of a trace's times: the host's steady clock, or the SPEs' simulated clocks (SpeOptions::timing).
 enum class TraceClock : std::uint8_t { kHost, kSimulated };
 
 struct SpeEvents;
@@ -39,14 +39,14 @@ class SpeTrace final : public dma::MfcObserver {
   SpeTrace& operator=(const SpeTrace&) = delete;
 
   TraceClock clock() const { return clock_; }
-  /// The time now: by the host's clock, or as set_time() said last.
+  /// The time now: by the host's clock, or the last one passed to set_time().
   TraceTime now() const { return clock_ == TraceClock::kHost ? trace_now() : simulated_now_; }
 
-  // For a simulated clock.
+  // These are for a simulated clock.
   void set_time(TraceTime now) { simulated_now_ = now; }
   /// The command that was recorded last, for complete_at().
   std::size_t last_command() const;
-  /// Says when a command is complete, whatever the order in which its bytes have moved here.
+  /// Sets when a command is complete, whatever the order in which its bytes have moved here.
   void complete_at(std::size_t command, TraceTime when);
 
   /// Records a run that has ended. Copies the declarations of an image when the image first occurs.
@@ -63,7 +63,7 @@ class SpeTrace final : public dma::MfcObserver {
   /// @pre  begin <= end
   void on_wait(std::uint32_t channel, TraceTime begin, TraceTime end);
 
-  /// A mistake that this SPE has made before is only counted.
+  /// Records a finding. If this SPE has made the same mistake before, it is only counted.
   void on_finding(const dma::Fault& fault, TraceTime when);
 
   // dma::MfcObserver: DMA commands from issue to completion. If a fault ends a job before a command
@@ -88,11 +88,11 @@ class SpeTrace final : public dma::MfcObserver {
 /// The trace of a run. SPE n records to spe(n) while it runs; call write() when all SPEs have stopped.
 class Trace {
  public:
-  /// 4 million events of an SPE are half an hour of a demo; its commands then take 160 MB.
+  /// 4 million events per SPE are enough for half an hour of a demo; its commands then take 160 MB.
   static constexpr std::size_t kMostEvents = 4'000'000;
 
   /// @param spes         1 or more.
-  /// @param most_events  of each SPE and kind: jobs, waits, commands, findings.
+  /// @param most_events  for each SPE and kind: jobs, waits, commands, findings.
   explicit Trace(int spes, std::size_t most_events = kMostEvents, TraceClock clock = TraceClock::kHost);
   ~Trace();
 

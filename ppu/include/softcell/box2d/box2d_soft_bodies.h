@@ -6,15 +6,15 @@
 //     soft_bodies.step(1.0f / 120);                            // in place of world.Step()
 //     draw(man.positions());
 //
-// A soft body touches with its drawn edge: make_skin_2d() with the contact radius of its model, or the skin that add() gets. Box2D
-// knows nothing of the body, so that its rays, overlap tests and contact listeners do not see it; contacts(), poll_contact_events()
-// and cast_ray() do. Rigid bodies are Box2D's own business.
+// A soft body touches with its drawn edge: make_skin_2d() with the contact radius of its model, or the skin that add() gets. Box2D does not
+// know of the body, so Box2D's rays, overlap tests and contact listeners do not see it; use contacts(), poll_contact_events() and
+// cast_ray() instead. Box2D alone handles rigid bodies.
 //
 //     step:  [solver: v] [contacts: v, x += h v, impulses on rigid bodies] [Box2D: rigid bodies]
 //
-// With ContactMethod::kSpheres, the way of 2008, each outer particle is a b2Body: a circle that cannot turn (a rolling one would
-// have no friction). It collides with everything in the world except its own body. Box2D moves the circles; softcell never writes
-// their positions. It integrates the inner particles, which nothing can touch.
+// With ContactMethod::kSpheres, the method of 2008, each outer particle is a b2Body: a circle that cannot rotate (a rolling one would have
+// no friction). It collides with everything in the world except its own body. Box2D moves the circles; softcell never writes their
+// positions. softcell integrates the inner particles, which nothing can touch.
 //
 //     step:  [solver: v] [Box2D: collide, solve, x += h v] [gather x v, inner x += h v]
 
@@ -47,7 +47,7 @@ struct Contact2d {
   b2Body* rigid = nullptr;              ///< the rigid body; or null
 };
 
-/// A contact, and with which object of Box2D.
+/// A contact event, with the object of Box2D that takes part.
 struct ContactEvent2d : SoftContactEvent<2> {
   b2Body* rigid = nullptr;      ///< the rigid body, also of a sensor; or null, and it is `other`
   b2Fixture* sensor = nullptr;  ///< the trigger volume; or null
@@ -71,12 +71,12 @@ class Box2dSoftBodies {
   /// from passing through walls that do not move.
   static constexpr float kMaxTravelInCells = 1.0f;
 
-  /// The thread that steps the world does the shape matching. @param world  outlives this.
+  /// The thread that steps the world does the shape matching. @param world  must outlive this object.
   explicit Box2dSoftBodies(b2World& world, ContactMethod contacts = ContactMethod::kSurface);
-  /// @param solvers  makes the solver that does the shape matching: SpeRuntime has SPEs do it. Outlives this.
+  /// @param solvers  makes the solver that does the shape matching: with an SpeRuntime the SPEs do it. Must outlive this object.
   Box2dSoftBodies(b2World& world, SolverFactory& solvers, ContactMethod contacts = ContactMethod::kSurface);
-  /// @param solver  does the shape matching: SpeSolver<2> on the SPEs. Outlives this, and serves no other object.
-  /// @param worker  for ContactMethod::kSurface: finds and solves contacts where there are many, as SolverFactory makes it; null: the
+  /// @param solver  does the shape matching: SpeSolver<2> on the SPEs. Must outlive this object, and serve no other object.
+  /// @param worker  for ContactMethod::kSurface: finds and solves contacts if there are many, as SolverFactory makes it; null: the
   ///                thread that steps the world does it
   Box2dSoftBodies(b2World& world, SoftBodySolver<2>& solver, ContactMethod contacts = ContactMethod::kSurface,
                   std::shared_ptr<ContactWorker> worker = nullptr);
@@ -88,8 +88,8 @@ class Box2dSoftBodies {
   /// Adds a body at rest, its model's origin at `position` (metres). The reference is valid until remove(). Between steps you
   /// may change the body through its own functions; the next step sees the change. When a body of another model is
   /// assigned to it, its attachments end.
-  /// @param drawn  how bodies of the model are drawn: their outlines touch. Null: as make_skin_2d() draws them. Only that of the first body
-  ///               of a model counts, and none with ContactMethod::kSpheres. It need not outlive the call
+  /// @param drawn  how bodies of the model are drawn: their outlines touch. Null: as make_skin_2d() draws them. Only the skin passed
+  ///               with the first body of a model counts, and none with ContactMethod::kSpheres. It need not outlive the call
   /// @throws std::runtime_error  with ContactMethod::kSpheres there would be more than 32,768 bodies
   /// @pre the model is not null; the position is finite; the skin has outlines
   SoftBody<2>& add(std::shared_ptr<const SoftBodyModel<2>> model, const Eigen::Vector2f& position,
@@ -101,15 +101,15 @@ class Box2dSoftBodies {
   /// Holds a patch of a body at its present place in the world, which move_attachment() can move.
   ///
   /// begin_step() solves attachments after the shape matching, together with contacts; with ContactMethod::kSpheres before Box2D solves
-  /// contacts. The bodies wake, and do not sleep while they are attached. With ContactMethod::kSpheres attached sides that shall not touch need a contact filter, which softcell installs. It asks the world's own filter first
-  /// and puts that back at the end. A filter that the caller installs later must call the one that it replaces
-  /// (b2ContactManager::m_contactFilter).
-  /// @throws std::invalid_argument  a body is not one of these; a setting is out of its range; the patch is empty, or too small for what
-  ///         is asked of it. The sentence says what was found and what was expected.
+  /// contacts. The bodies wake, and do not sleep while they are attached. With ContactMethod::kSpheres, softcell installs a contact filter
+  /// if attached sides shall not touch. The filter asks the world's own filter first, which softcell restores at the end. A filter that the
+  /// caller installs later must call the one that it replaces (b2ContactManager::m_contactFilter).
+  /// @throws std::invalid_argument  a body is not one of these; a setting is out of its range; the patch is empty, or too small for this
+  /// kind of attachment. The message says what was found and what was expected.
   AttachmentId attach(const SoftBody<2>& body, const Patch<2>& patch,
                       const AttachmentSettings<2>& settings = {});
-  /// Holds a patch to a rigid body. When that is destroyed, the attachment ends with the next step. Detach it yourself if you create another
-  /// b2Body before that step: Box2D may reuse the address.
+  /// Holds a patch to a rigid body. When the rigid body is destroyed, the attachment ends with the next step. Detach it yourself if you
+  /// create another b2Body before that step: Box2D may reuse the address.
   /// @throws std::invalid_argument  as above; the b2Body is not in the world, or is a particle of a soft body.
   AttachmentId attach(const SoftBody<2>& body, const Patch<2>& patch, b2Body& rigid,
                       const AttachmentSettings<2>& settings = {});
@@ -121,7 +121,7 @@ class Box2dSoftBodies {
   /// Moves the place in the world to which something is attached. The place moves evenly and arrives after `seconds` of simulated time, at
   /// the earliest at the end of the next step.
   /// @param position  metres: the new point of a hinge or rope; of a weld, where the middle of the patch shall be
-  /// @param angle  radians, counter-clockwise: of the place, against its orientation when the patch was attached
+  /// @param angle  radians, counter-clockwise: of the place, relative to its orientation when the patch was attached
   /// @throws std::invalid_argument  there is no such attachment, or it is to a body; a value is not finite; seconds below 0.
   void move_attachment(AttachmentId id, const Eigen::Vector2f& position, float angle = 0, float seconds = 0);
   /// What an attachment did in the last step; no value if it has ended.
@@ -153,13 +153,13 @@ class Box2dSoftBodies {
   /// @throws std::invalid_argument  the body is not one of these
   bool is_breaking(const SoftBody<2>& body) const;
 
-  /// Says what a body may touch: fixtures, whose category and mask bits count, and other soft bodies. The body wakes.
+  /// Sets what a body may touch: fixtures, whose category and mask bits count, and other soft bodies. The body wakes.
   /// @throws std::invalid_argument  the body is not one of these
   void set_filter(const SoftBody<2>& body, const CollisionFilter& filter);
 
   /// One step of the world and its soft bodies.
-  /// @param step  seconds, the same in every step, as a body's stiffness depends on it unless its settings have a frequency, and a step that
-  ///              is much shorter or longer than the one before throws bodies up. 0 changes nothing, as of b2World::Step().
+  /// @param step  seconds, the same in every step: a body's stiffness depends on it unless its settings have a frequency, and a step much
+  ///              shorter or longer than the one before throws bodies up. 0 changes nothing, as in b2World::Step().
   /// @throws std::invalid_argument  the step is negative or not finite.
   void step(float step, int velocity_iterations = 8, int position_iterations = 3);
 
@@ -192,22 +192,23 @@ class Box2dSoftBodies {
   Particle particle_of(const b2Body& body) const;
 
   /// Switches contact events on or off for bodies that touch with their drawn edges. They are off by default and cost nothing then. For
-  /// circles use a listener of Box2D's.
+  /// circles use one of Box2D's listeners.
   void watch_contacts(bool watch);
-  /// Which contacts have begun, continued or ended since the last call: one event for each two bodies, in the order in which bodies were
-  /// added. Two bodies that sleep on each other have no events until one of them wakes.
+  /// The contacts that have begun, continued or ended since the last call: one event for each pair of bodies, in the order in which bodies
+  /// were added. A pair of bodies that both sleep has no events until one of them wakes.
   ///
   /// A sensor fixture is a trigger volume: the events say which bodies, awake or asleep, are in it. Its collision filter counts. An edge or
   /// chain has no inside: a body is in such a volume if the edge cuts it.
   std::vector<ContactEvent2d> poll_contact_events();
 
   /// The first point at which the line from `from` to `to` (metres) meets the drawn edge of one of these bodies, from inside or outside.
-  /// Each body near the line costs some microseconds, with circles more, as a skin is made: for many rays keep a SurfaceQuery for each body.
+  /// Each body near the line costs some microseconds; a body with circles costs more, as its skin has to be made. For many rays keep a
+  /// SurfaceQuery for each body.
   /// @param filter  the ray passes through bodies that may not touch something with this filter  @pre from and to are finite
   std::optional<SoftRayHit2d> cast_ray(const Eigen::Vector2f& from, const Eigen::Vector2f& to,
                                        const CollisionFilter& filter = {}) const;
 
-  /// The contacts of the last step at which something presses. None with ContactMethod::kSpheres: Box2D has these.
+  /// The contacts of the last step whose impulse is above 0. Empty with ContactMethod::kSpheres: these contacts are in Box2D.
   std::vector<Contact2d> contacts() const;
 
   /// Elapsed time of this class's part of the steps so far.

@@ -15,9 +15,9 @@
 // The thread that steps the world does this work, unless the constructor gets an SpeRuntime:
 //
 //     SpeRuntime spes;                                         // spe_bodies/spe_runtime.h
-//     BulletSoftBodies soft_bodies(world, spes);               // SPEs do it
+//     BulletSoftBodies soft_bodies(world, spes);               // the SPEs do it
 //
-// With ContactMethod::kSpheres, the way of 2008, each outer particle is a btRigidBody: a small sphere that cannot turn (a rolling one
+// With ContactMethod::kSpheres, the method of 2008, each outer particle is a btRigidBody: a small sphere that cannot rotate (a rolling one
 // would have no friction). Bullet moves these spheres and solves their contacts with everything else in the world and with other soft
 // bodies. softcell never writes their positions, because that would spoil Bullet's contacts. It integrates the inner particles, which
 // nothing can touch:
@@ -56,7 +56,7 @@ struct SoftBodyTimes {
   std::chrono::nanoseconds processor() const { return gather + solve + apply + contacts; }
 };
 
-/// A contact, and with which object.
+/// A contact event, with the object of Bullet that takes part.
 struct ContactEvent : SoftContactEvent<3> {
   /// The object of Bullet that the body touches, or null. If its hasContactResponse() is false, it is a trigger volume.
   const btCollisionObject* object = nullptr;
@@ -85,15 +85,15 @@ class BulletSoftBodies {
   /// With cells of 0.2 m and substeps of 1/120 s the limit is 24 m/s, the speed after a fall of 29 m.
   static constexpr float kMaxTravelInCells = 1.0f;
 
-  /// @param world  outlives this.
+  /// @param world  must outlive this object.
   explicit BulletSoftBodies(btDiscreteDynamicsWorld& world, ContactMethod contacts = ContactMethod::kSurface);
-  /// @param solvers  makes the solver for these bodies; outlives this. Usually an SpeRuntime.
+  /// @param solvers  makes the solver for these bodies; must outlive this object. Usually an SpeRuntime.
   /// @throws std::runtime_error  as SolverFactory::make_solver().
   BulletSoftBodies(btDiscreteDynamicsWorld& world, SolverFactory& solvers,
                    ContactMethod contacts = ContactMethod::kSurface);
-  /// @param solver  outlives this, and serves no other object.
+  /// @param solver  must outlive this object, and serve no other object.
   /// @param worker  for ContactMethod::kSurface: finds and solves contacts, as SolverFactory makes it; null: the thread
-  ///                that steps the world does
+  ///                that steps the world does it
   BulletSoftBodies(btDiscreteDynamicsWorld& world, SoftBodySolver<3>& solver,
                    ContactMethod contacts = ContactMethod::kSurface,
                    std::shared_ptr<ContactWorker> worker = nullptr);
@@ -116,10 +116,10 @@ class BulletSoftBodies {
   /// The bodies wake now, and when an attachment is moved, detached or breaks. Bodies that are attached to each other sleep and wake
   /// together. Only bodies that touch with their surfaces (ContactMethod::kSurface) and have contacts can be attached.
   /// @throws std::invalid_argument  a body is not one of these, or cannot be attached; a setting is out of its range; the patch is empty,
-  ///         or too small for what is asked of it. The sentence says what was found and what was expected.
+  /// or too small for this kind of attachment. The message says what was found and what was expected.
   AttachmentId attach(const SoftBody<3>& body, const Patch<3>& patch,
                       const AttachmentSettings<3>& settings = {});
-  /// Holds a patch to a rigid body, until that is removed from the world.
+  /// Holds a patch to a rigid body, until the rigid body is removed from the world.
   /// @throws std::invalid_argument  as above; the rigid body is not in the world.
   AttachmentId attach(const SoftBody<3>& body, const Patch<3>& patch, btRigidBody& rigid,
                       const AttachmentSettings<3>& settings = {});
@@ -131,7 +131,7 @@ class BulletSoftBodies {
   /// Moves the place in the world to which something is attached. The place moves evenly and arrives after `seconds` of simulated time, at
   /// the earliest at the end of the next substep.
   /// @param position  metres: the new point of a hinge or rope; of a weld, where the middle of the patch shall be
-  /// @param rotation  of the place, against its orientation when the patch was attached; of any length but 0
+  /// @param rotation  of the place, relative to its orientation when the patch was attached; of any length but 0
   /// @throws std::invalid_argument  there is no such attachment, or it is to a body; a value is not finite; seconds below 0.
   void move_attachment(AttachmentId id, const Eigen::Vector3f& position,
                        const Eigen::Quaternionf& rotation = Eigen::Quaternionf::Identity(),
@@ -189,11 +189,11 @@ class BulletSoftBodies {
   /// Switches contact events on or off for bodies that touch with their surfaces. They are off by default and cost nothing then. For spheres
   /// use Bullet's own callbacks.
   void watch_contacts(bool watch);
-  /// Which contacts have begun, continued or ended since the last call: one event for each two bodies, in the order in which bodies were
-  /// added. Two bodies that sleep on each other have no events until one of them wakes.
+  /// The contacts that have begun, continued or ended since the last call: one event for each pair of bodies, in the order in which bodies
+  /// were added. A pair of bodies that both sleep has no events until one of them wakes.
   ///
   /// A collision object or rigid body with btCollisionObject::CF_NO_CONTACT_RESPONSE, a btGhostObject for example, is a trigger volume: it
-  /// holds nothing up, and the events say which bodies, awake or asleep, are in it. Its collision filter counts. A triangle mesh has no
+  /// stops nothing, and the events say which bodies, awake or asleep, are in it. Its collision filter counts. A triangle mesh has no
   /// inside: a body is in such a volume if triangles cut it.
   std::vector<ContactEvent> poll_contact_events();
 

@@ -1,17 +1,17 @@
 #pragma once
-// Jobs that SPEs execute without help of the PPU: chains of jobs in main memory, from which resident job loops
-// take one after the other.
+// Jobs that SPEs execute without help of the PPU: chains of jobs in main memory, from which resident job loops take one job after the
+// other.
 //
 //   JobSystem jobs(memory, {.spes = 6}, job_loop);
 //   const JobImage skin = jobs.load(image);
 //   JobChain chain(jobs, "skinning", 100);
-//   chain.add({skin, first.ea()});  chain.add({skin, second.ea()});  // in any order, at the same time
-//   chain.sync();                                                    // not before all of the above:
+//   chain.add({skin, first.ea()});  chain.add({skin, second.ea()});  // these run in any order, at the same time
+//   chain.sync();                                                    // the next stage begins after all of them
 //   chain.add({skin, third.ea()});
 //   chain.kick();                                                    // the PPU is free
-//   chain.wait();                                                    // ... until it wants the result
+//   chain.wait();                                                    // ... until it needs the result
 //
-// spu_kernels/job_chain.h has what lies in memory, spu_kernels/job_loop.cpp what the SPEs do with it.
+// spu_kernels/job_chain.h describes the data in memory, spu_kernels/job_loop.cpp what the SPEs do with it.
 
 #include <cstddef>
 #include <memory>
@@ -29,7 +29,7 @@ class JobChain;
 /// An image in main memory, where job loops fetch it. Valid as long as its JobSystem.
 class JobImage {
  public:
-  const ls_sim::KernelImage& kernel() const { return *kernel_; }  ///< as it was given to load()
+  const ls_sim::KernelImage& kernel() const { return *kernel_; }  ///< as passed to load()
 
  private:
   friend class JobSystem;
@@ -41,7 +41,7 @@ class JobImage {
 /// One run of an image.
 struct Job {
   JobImage image;
-  dma::EffectiveAddress argp;  ///< main's second parameter, as a rule the address of the job's description
+  dma::EffectiveAddress argp;       ///< main's second parameter, usually the address of the job's description
   dma::EffectiveAddress envp = {};  ///< main's third
 };
 
@@ -62,7 +62,7 @@ struct JobFailure {
 class JobSystem {
  public:
   /// @param options   the deadline is that of a job; findings: jobs must then be checked images.
-  /// @param job_loop  the image of the kernel job_loop; outlives the system.
+  /// @param job_loop  the image of the kernel job_loop; must outlive the system.
   /// @throws std::invalid_argument  `job_loop` is linked to the addresses at which jobs run; as SpeGroup.
   /// @throws std::runtime_error     as SpeGroup.
   JobSystem(dma::AddressSpace& memory, const ls_sim::SpeOptions& options,
@@ -80,11 +80,11 @@ class JobSystem {
   /// @throws std::runtime_error     main memory is full.
   JobImage load(const ls_sim::KernelImage& image);
 
-  /// Waits for all chains and ends the job loops. Statistics and traces are complete afterwards: they also have what the
-  /// loops did between jobs. No chain may be kicked after this.
+  /// Waits for all chains and ends the job loops. Afterwards statistics and traces are complete: they include what the loops did between
+  /// jobs. No chain may be kicked after this.
   void stop();
 
-  /// Of each SPE, up to the last job that it has ended. Any thread.
+  /// The statistics of each SPE, up to the last job that it has ended. Any thread.
   std::vector<ls_sim::SpeStatistics> statistics() const;
 
   int spes() const;  ///< their number, 1..6
@@ -95,29 +95,29 @@ class JobSystem {
   std::unique_ptr<State> state_;
 };
 
-/// Jobs in stages: those of one stage run in any order and at the same time, so they must not depend on each
-/// other; the next stage begins when all have ended. So the result has the same bits for any number of SPEs.
-/// Used by one thread. SPEs look at chains in the order in which they were constructed: jobs of an earlier one go first.
+/// Jobs in stages. The jobs of one stage run in any order and at the same time, so they must not depend on each other; the next stage
+/// begins when all of them have ended. So the result has the same bits for any number of SPEs. Used by one thread. SPEs look at chains in
+/// the order in which these were constructed: jobs of an earlier chain go first.
 class JobChain {
  public:
   /// @throws std::runtime_error  there are 15 chains already, or main memory is full.
   JobChain(JobSystem& system, const std::string& name, std::size_t most_jobs);
 
-  /// Waits for its jobs under way.
+  /// Waits for the chain's jobs under way.
   ~JobChain();
   JobChain(const JobChain&) = delete;
   JobChain& operator=(const JobChain&) = delete;
 
-  /// Makes room for so many jobs, if there is less; those that were added stay. Waits for jobs under way.
-  /// @throws std::runtime_error  main memory is full; then the chain is as it was.
+  /// Makes room for this many jobs; jobs that were added stay. Waits for jobs under way.
+  /// @throws std::runtime_error  main memory is full; the chain has not changed.
   void reserve(std::size_t most_jobs);
 
   // The jobs of the next kick(). They stay until clear(), so that a chain can be kicked again. @pre finished()
 
   void clear();  ///< removes all jobs
-  /// Adds a job to the present stage. @throws std::length_error  more than most_jobs.
+  /// Adds a job to the present stage. @throws std::length_error  there are most_jobs already.
   void add(const Job& job);
-  /// Ends a stage, if it has a job.
+  /// Ends the present stage, if it has a job.
   void sync();
 
   std::size_t size() const;  ///< jobs added
@@ -128,10 +128,10 @@ class JobChain {
   /// Whether all jobs of the last kick have ended.
   bool finished();
 
-  /// Blocks until they have. Always returns: a job that never ends is stopped by the deadline of the options.
+  /// Waits until all jobs of the last kick have ended. Always returns: the deadline of the options stops a job that never ends.
   void wait();
 
-  /// The failures of the last kick, in order; empty if there were none. Stages behind one that failed have not run.
+  /// The failures of the last kick, in order; empty if there were none. Stages after a failed one have not run.
   /// @pre finished()
   const std::vector<JobFailure>& failures() const;
 

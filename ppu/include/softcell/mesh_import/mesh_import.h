@@ -1,5 +1,5 @@
 #pragma once
-// Triangle meshes from files.
+// Reads triangle meshes from files.
 
 #include <filesystem>
 #include <span>
@@ -12,8 +12,8 @@ namespace softcell::ppu {
 
 /// What import_mesh() reports besides the mesh.
 struct ImportReport {
-  /// What the file has and import_mesh() does not read, to be printed behind "not read: ": "animations",
-  /// "the picture 'bark.webp', which is neither PNG nor JPEG". Empty: everything was read.
+  /// What the file contains but import_mesh() does not read, to be printed after "not read: ": "animations", "the picture 'bark.webp',
+  /// which is neither PNG nor JPEG". Empty: everything was read.
   std::vector<std::string> not_read;
   /// The files that were read: the mesh's own, its material library, buffers and pictures.
   std::vector<std::filesystem::path> files;
@@ -23,20 +23,19 @@ struct ImportReport {
 /// normals are taken from the file or made, smooth up to a crease. A position whose corners have several normals,
 /// texture coordinates or colours becomes as many vertices. Any thread.
 ///
-/// What is kept beside positions and normals:
-/// - glTF: the objects of the scene where their nodes have them, materials with their pictures (PNG, JPEG), one set of
+/// Besides positions and normals it keeps:
+/// - glTF: the objects of the scene at their nodes' places, materials with their pictures (PNG, JPEG), one set of
 ///   texture coordinates, vertex colours. Animations, skins, morph targets and most extensions are not read.
-/// - OBJ: objects, groups, texture coordinates, vertex colours, and of the material library the statements Kd, map_Kd,
-///   d, Tr, Pr, Pm and norm with their pictures.
+/// - OBJ: objects, groups, texture coordinates, vertex colours, and the statements Kd, map_Kd, d, Tr, Pr, Pm and norm of the
+///   material library, with their pictures.
 /// - PLY: texture coordinates, vertex colours. STL: solids (text), colours of triangles (binary).
 ///
-/// Other files that the mesh's file names (buffers, material library, pictures) are opened only if they lie in its
-/// folder or below, after links are followed. A mesh can do without material library and pictures.
+/// Other files that the mesh's file names (buffers, material library, pictures) are opened only if they lie in its folder or below, after
+/// links are followed. The material library and pictures may be missing.
 /// @param report  receives what was not read; may be null
-/// @throws std::runtime_error  one sentence that names the file and what is wrong with it: there is no such
-/// file, the format is unknown, the file, or one that it names, cannot be read as one, it has no triangles or more than
-/// 4 million, its pictures have more than 64 million pixels, a coordinate is NaN or infinite, an index is out of range,
-/// it requires an extension of glTF that softcell does not read.
+/// @throws std::runtime_error  one sentence that names the file and what is wrong with it: there is no such file, the format is unknown,
+/// the file, or one that it names, is not valid in its format, it has no triangles or more than 4 million, its pictures have more than 64
+/// million pixels, a coordinate is NaN or infinite, an index is out of range, or it requires a glTF extension that softcell does not read.
 TriangleMesh import_mesh(const std::filesystem::path& path, ImportReport* report = nullptr);
 
 /// The same for a file in memory, which can name no other files.

@@ -73,7 +73,7 @@ enum class AttachmentId : std::uint32_t {};
 template <int kDimension>
 struct AttachmentState {
   Eigen::Vector<float, kDimension> force = Eigen::Vector<float, kDimension>::Zero();  ///< N, on the patch
-  /// Metres between the middle of the patch and where it is held; of a rope, to its other end.
+  /// Metres between the middle of the patch and the place where it is held; for a rope, to its other end.
   float gap = 0;
 };
 
@@ -101,7 +101,7 @@ struct EndedAttachment {
   Reason reason = Reason::kBroken;
 };
 
-/// @throws std::invalid_argument  a value is out of its range, or given for another kind; the sentence names it and the range.
+/// @throws std::invalid_argument  a value is out of its range, or given for another kind; the message names it and the range.
 template <int kDimension>
 void validate(const AttachmentSettings<kDimension>& settings);
 extern template void validate(const AttachmentSettings<2>& settings);

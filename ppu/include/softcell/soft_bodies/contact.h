@@ -1,5 +1,5 @@
 #pragma once
-// How soft bodies touch, and where.
+// How soft bodies touch, and contacts.
 
 #include <Eigen/Core>
 #include <cstddef>
@@ -11,24 +11,25 @@ namespace softcell::ppu {
 template <int kDimension>
 class SoftBody;
 
-/// What soft bodies touch with.
+/// The shape with which soft bodies touch.
 enum class ContactMethod {
-  /// A rigid sphere, in two dimensions a circle, at each outer particle, which the engine moves: the way of the report of 2008. Each outer particle costs a rigid body,
-  /// and things stop at a distance from what is drawn.
+  /// A rigid sphere, in two dimensions a circle, at each outer particle. The engine moves them: the method of the report of 2008. Each
+  /// outer particle costs a rigid body, and other things stop at a distance from the drawn shape.
   kSpheres,
-  /// What is drawn; the default. Points of the mesh's surface meet rigid shapes and other soft bodies; the edges and points of those meet
-  /// the body's distance field. The engine does not know the body or its particles, so the engine's own rays, overlap tests and contact
-  /// callbacks do not see it. Use cast_ray() and poll_contact_events() of BulletSoftBodies and Box2dSoftBodies, or SurfaceQuery for one body.
+  /// The drawn surface; the default. Points of the mesh's surface are tested against rigid shapes and other soft bodies; edges and points
+  /// of those are tested against the body's distance field. The engine does not know of the body or its particles, so the engine's own
+  /// rays, overlap tests and contact callbacks do not see it. Use cast_ray() and poll_contact_events() of BulletSoftBodies and
+  /// Box2dSoftBodies, or SurfaceQuery for one body.
   kSurface,
 };
 
-/// Says which bodies may touch. Two bodies may if the group of each has a bit in common with the mask of the other. Groups are Bullet's: by
-/// default what moves is in group 1, what stands still in group 2.
+/// Says which bodies may touch. Two bodies may touch if the group of each has a bit in common with the mask of the other. Groups are
+/// Bullet's: by default moving bodies are in group 1, static ones in group 2.
 struct CollisionFilter {
   int group = 1;
   int mask = -1;
 
-  /// Whether two with these filters may touch.
+  /// Whether two bodies with these filters may touch.
   bool lets(const CollisionFilter& other) const {
     return (group & other.mask) != 0 && (other.group & mask) != 0;
   }
@@ -63,7 +64,7 @@ struct Contact {
 template <int kDimension>
 struct SoftContactEvent {
   using Vector = Eigen::Vector<float, kDimension>;
-  /// How the two touch now, compared with the last call of poll_contact_events().
+  /// Whether the two touch now, and whether they did at the last call of poll_contact_events().
   enum class Kind {
     kBegin,    ///< they touch, and did not then
     kPersist,  ///< they touch, and did then
@@ -73,7 +74,7 @@ struct SoftContactEvent {
   const SoftBody<kDimension>* body = nullptr;
   /// The other soft body, or `body` itself if it is folded; null if the other one is an object of the engine.
   const SoftBody<kDimension>* other = nullptr;
-  /// Metres: the mean of the points where they press, weighted by impulse; for a trigger volume, a point that both have in common.
+  /// Metres: the mean of the contact points, weighted by impulse; for a trigger volume, a point that both have in common.
   Vector position = Vector::Zero();
   /// Unit length, from the other one to `body`; for a trigger volume, the direction out of it.
   Vector normal = Vector::UnitY();

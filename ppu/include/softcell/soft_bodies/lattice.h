@@ -70,11 +70,11 @@ struct Lattice {
 /// inside. Deterministic. The surface may have gaps smaller than a cell.
 /// @throws std::runtime_error  cell size not positive and finite; so large that one cell holds the whole
 ///         mesh; so small that the lattice passes kMaxLatticeParticles or kMaxLatticeCellsPerAxis (found
-///         before anything is allocated for it); the sentence states the value and what would fit.
+///         before anything is allocated for it); the message states the value and what would fit.
 Lattice<3> voxelize(const TriangleMesh& mesh, float cell_size);
 
-/// The number of particles that voxelize() would make, found without the lattice; it may pass kMaxLatticeParticles.
-/// @throws std::runtime_error  as voxelize() for all else
+/// The number of particles that voxelize() would make, found without making the lattice; it may exceed kMaxLatticeParticles.
+/// @throws std::runtime_error  as voxelize(), for all other reasons
 std::size_t count_particles(const TriangleMesh& mesh, float cell_size);
 
 /// A lattice from cells given by their grid indices (any order, repeats ignored), all with fill 1.
@@ -87,9 +87,9 @@ Lattice<3> lattice_from_cells(std::span<const Eigen::Vector3i> cells, float spac
 Lattice<2> lattice_from_cells(std::span<const Eigen::Vector2i> cells, float spacing,
                               const Eigen::Vector2f& origin = Eigen::Vector2f::Zero());
 
-/// The cells of a picture in text, one row a string, the top row first: '#' is a cell, '.' and ' ' are none.
+/// The cells of a picture in text, one string per row, the top row first: '#' is a cell, '.' and ' ' are empty.
 /// Row and column of the lower left character are grid index (0, 0).
-/// @throws std::runtime_error  any other character: the sentence has its row and column.
+/// @throws std::runtime_error  any other character: the message gives its row and column.
 std::vector<Eigen::Vector2i> cells_from_rows(std::span<const std::string> rows);
 
 /// Mass of each particle in kg: density (kg/m^3, in two dimensions kg/m^2) times the filled volume (area);

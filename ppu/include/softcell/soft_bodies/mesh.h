@@ -1,5 +1,5 @@
 #pragma once
-// Triangle meshes: what a soft body is made from, and what it is drawn with.
+// Triangle meshes, from which soft bodies are made and with which they are drawn.
 
 #include <Eigen/Core>
 #include <array>
@@ -25,7 +25,7 @@ struct MeshPart {
 /// An indexed triangle mesh in metres. `normals` has one unit vector per position. Each attribute below
 /// `triangles` is either empty or complete; softcell carries attributes along and does not interpret them.
 struct TriangleMesh {
-  /// Metres. One that belongs to no triangle is skinned with the others, and refused if it lies outside of the lattice.
+  /// Metres. A position that belongs to no triangle is skinned with the others, and refused if it lies outside of the lattice.
   std::vector<Eigen::Vector3f> positions;
   std::vector<Eigen::Vector3f> normals;
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< counter-clockwise seen from outside
@@ -48,22 +48,22 @@ struct Bounds {
 /// The mesh's axis-aligned box. @pre at least one position.
 Bounds<3> bounds(const TriangleMesh& mesh);
 
-/// Moves and scales the mesh so that its box is centred on 0 and its longest side has the given length in
-/// metres. @pre at least one position; longest_side is positive and finite.
+/// Moves and scales the mesh so that its box is centred on 0 and its longest side has the given length in metres. @pre at least one
+/// position; longest_side is positive and finite.
 void fit(TriangleMesh& mesh, float longest_side);
 
 /// Turns the mesh about its origin. @pre `rotation` is orthogonal, with determinant 1.
 void rotate(TriangleMesh& mesh, const Eigen::Matrix3f& rotation);
 
-/// Turns a mesh whose z axis points upwards so that its y axis does: (x, y, z) becomes (x, z, -y), exactly.
+/// Turns a mesh whose z axis points upwards so that its y axis points upwards: (x, y, z) becomes (x, z, -y), exactly.
 void turn_z_up(TriangleMesh& mesh);
 
 /// Multiplies all lengths. @pre the factor is positive and finite.
 void scale(TriangleMesh& mesh, float factor);
 
 /// Checks that the mesh's arrays fit each other.
-/// @throws std::invalid_argument  the number of normals or of an attribute is not that of positions, an index is out of
-/// range, a normal has no length or is not finite, or parts leave triangles out or name a material that does not exist; the sentence says which.
+/// @throws std::invalid_argument  the number of normals or of an attribute is not that of positions, an index is out of range, a normal has
+/// no length or is not finite, or parts leave triangles out or name a material that does not exist; the message says which.
 void validate(const TriangleMesh& mesh);
 
 }  // namespace softcell::ppu

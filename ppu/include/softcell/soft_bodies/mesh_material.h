@@ -1,6 +1,6 @@
 #pragma once
-// How parts of a mesh look: colours and pictures for a renderer. (What a soft body is made of is its
-// SoftBodySettings.) softcell carries mesh materials along and simulates nothing by them.
+// How parts of a mesh look: colours and pictures for a renderer. (A soft body's physical material is in its SoftBodySettings.) softcell
+// carries mesh materials along; they do not affect the simulation.
 
 #include <Eigen/Core>
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace softcell::ppu {
 
-/// A picture in memory: four bytes a pixel, red, green, blue and alpha, rows from top to bottom without padding.
+/// A picture in memory: four bytes per pixel, red, green, blue and alpha, rows from top to bottom without padding.
 struct MeshPicture {
   int width = 0, height = 0;       ///< pixels
   std::vector<std::uint8_t> rgba;  ///< 4 width height bytes
@@ -37,15 +37,15 @@ struct MeshTexture {
   bool operator==(const MeshTexture& other) const;
 };
 
-/// What is drawn of a part that is not opaque everywhere.
+/// How a part is drawn that is not opaque everywhere.
 enum class MeshAlpha : std::uint8_t {
   kOpaque,  ///< alpha is not used
-  kMask,    ///< what has an alpha below the cutoff is left out
-  kBlend,   ///< what lies behind shines through
+  kMask,    ///< places with an alpha below the cutoff are left out
+  kBlend,   ///< the background shines through
 };
 
-/// The metallic-roughness model of glTF 2.0. Colours are sRGB-encoded, as pictures and painting programs have
-/// them: decode them before they are multiplied. A pixel of a texture is multiplied with the number beside it.
+/// The metallic-roughness model of glTF 2.0. Colours are sRGB-encoded, as in pictures and painting programs: decode them before
+/// multiplying. A pixel of a texture is multiplied by the number beside it.
 struct MeshMaterial {
   std::string name;  ///< empty: it has none
   /// Red, green, blue, alpha, each 0..1; none: the file gives no colour.
@@ -61,14 +61,14 @@ struct MeshMaterial {
   MeshTexture normal_texture = {};
   float normal_scale = 1;  ///< of the first two
 
-  Eigen::Vector3f emission{0, 0, 0};  ///< light of its own: red, green, blue, 0..1, sRGB-encoded
+  Eigen::Vector3f emission{0, 0, 0};  ///< emitted light: red, green, blue, 0..1, sRGB-encoded
   MeshTexture emission_texture = {};  ///< sRGB-encoded
 
   MeshAlpha alpha = MeshAlpha::kOpaque;
   float alpha_cutoff = 0.5f;  ///< 0..1
   bool two_sided = false;     ///< inner sides are drawn, too
 
-  /// Whether the file says more than a name, so that a renderer need not use a colour of its own.
+  /// Whether the file gives more than a name; if not, a renderer may choose a colour.
   bool has_looks() const;
 
   bool operator==(const MeshMaterial&) const = default;

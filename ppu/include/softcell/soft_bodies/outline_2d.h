@@ -1,6 +1,6 @@
 #pragma once
-// What a soft body in two dimensions is drawn with: triangles that cover its cells, and its outline. Both are
-// particle numbers, so that they are made once for each model and drawn with the positions of the moment:
+// Draws a soft body in two dimensions: triangles that cover its cells, and its outline. Both consist of particle numbers, so they are made
+// once for each model and drawn with the particles' present positions:
 //
 //     const auto triangles = cell_triangles(model->lattice());   // once
 //     ...
@@ -17,9 +17,8 @@ namespace softcell::ppu {
 /// Two triangles for each cell, counter-clockwise, in the order of the lattice's cells.
 std::vector<std::array<std::uint32_t, 3>> cell_triangles(const Lattice<2>& lattice);
 
-/// The lattice's boundary as closed loops: those around the body counter-clockwise, those around its holes
-/// clockwise, the last particle of each joined to its first. Cells that touch in one corner only have loops
-/// that meet there and do not cross. Deterministic.
+/// The lattice's boundary as closed loops: those around the body counter-clockwise, those around its holes clockwise, the last particle of
+/// each joined to its first. Where cells touch in one corner only, loops meet and do not cross. Deterministic.
 ///
 /// A body is drawn smaller than it collides: circles of SoftBodyModel<2>::contact_radius() around the
 /// outline's particles keep other things away.

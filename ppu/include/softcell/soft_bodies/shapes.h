@@ -1,15 +1,13 @@
 #pragma once
-// Procedural closed meshes, y up, deterministic on every host (no libm in their coordinates). Their boxes are
-// centred on 0; a cone's, cylinder's or torus's along x only if it has an even number of segments around y,
-// its axis always is. Lengths in metres, positive and finite; std::invalid_argument otherwise, and for counts
-// outside of those stated.
+// Procedural closed meshes, y up, deterministic on every host (no libm in their coordinates). Their boxes are centred on 0. The box of a
+// cone, cylinder or torus is centred along x only if it has an even number of segments around y; its axis always is. Lengths are in metres,
+// positive and finite; std::invalid_argument otherwise, and for counts outside of the stated ranges.
 
 #include "softcell/soft_bodies/mesh.h"
 
 namespace softcell::ppu {
 
-/// A sphere of `radius` metres: a cube's six faces, each `subdivisions` (1..512) squares a side, pushed onto
-/// the sphere.
+/// A sphere of `radius` metres: six faces of a cube, each with `subdivisions` (1..512) squares per side, pushed onto the sphere.
 TriangleMesh make_sphere(float radius, int subdivisions);
 
 /// A torus about the y axis; `major` is the radius of the ring, `minor` that of the tube.
@@ -45,14 +43,13 @@ TriangleMesh make_capsule(float radius, float height, int segments);
 /// A vase about the y axis with a wall a twelfth of its `height` (metres) thick, half as wide as high; `segments` 3..2048.
 TriangleMesh make_vase(float height, int segments);
 
-/// A ramp: a box without the half above its diagonal; it rises along x, from nothing at -x to the full height
-/// at +x.
+/// A ramp: a box without the half above its diagonal; it rises along x, from 0 at -x to the full height at +x.
 TriangleMesh make_wedge(const Eigen::Vector3f& size);
 
-/// The edges of two cells of `size` metres, side by side along x, as bars; in the first cell a ball, and the
-/// lines through it to the cell's six sides. A lattice of cells of the same size has just these cells: it
-/// shows where a vertex within a cell goes when the cell's corners move.
-/// @param ball  where it is, in shares of the cell; each 0.1 to 0.9
+/// The edges of two cells of `size` metres, side by side along x, as bars; in the first cell a ball, and the lines through it to the cell's
+/// six sides. A lattice of cells of the same size has exactly these cells: it shows where a vertex in a cell goes when the cell's corners
+/// move.
+/// @param ball  its place, in shares of the cell; each 0.1 to 0.9
 TriangleMesh make_marked_cells(float size, const Eigen::Vector3f& ball);
 
 }  // namespace softcell::ppu

@@ -1,6 +1,6 @@
 #pragma once
-// The smooth shape with which a soft body in two dimensions is drawn: triangles and outlines whose vertices hang in
-// the lattice's cells and deform with them. Make a skin once for each model, and deform it in each frame:
+// The smooth shape with which a soft body in two dimensions is drawn: triangles and outlines whose vertices belong to the lattice's cells
+// and deform with them. Make a skin once for each model, and deform it in each frame:
 //
 //     const Skin2d skin = make_skin_2d(model->lattice(), SoftBodyModel<2>::kContactRadiusInCells);   // once
 //     ...
@@ -38,11 +38,11 @@ struct Pull2d {
   float share = 0, along_x = 0, along_y = 0;
 };
 
-/// A drawn shape that hangs in the cells of one lattice, and bends without kinks between them.
+/// A drawn shape that belongs to the cells of one lattice, and bends without kinks between them.
 struct Skin2d {
-  std::vector<Eigen::Vector2f> rest;        ///< of each vertex: where it is at rest, in grid coordinates
-  std::vector<std::uint32_t> vertex_cells;  ///< of each vertex: the number of the cell that it hangs in
-  /// What moves vertex i: pulls first_pull[i] to first_pull[i + 1].
+  std::vector<Eigen::Vector2f> rest;        ///< of each vertex: its place at rest, in grid coordinates
+  std::vector<std::uint32_t> vertex_cells;  ///< of each vertex: the number of the cell that it belongs to
+  /// The pulls that move vertex i: pulls first_pull[i] to first_pull[i + 1].
   std::vector<Pull2d> pulls;
   std::vector<std::uint32_t> first_pull{0};
   /// Of each vertex at rest: the slope of a surface that is level in the middle of the body and falls off to its edge.
@@ -62,11 +62,10 @@ inline constexpr float kMaxSkinMargin = 0.5f;
 /// outside of the shape; negative inside.
 using Outside2d = std::function<float(const Eigen::Vector2f&)>;
 
-/// The lattice's cells, wider by `margin` all around, with round corners and without stairs. With a margin of the
-/// contact radius the shape meets other things where the body does. Gaps that are one cell wide stay open.
-/// Deterministic.
+/// The shape of the lattice's cells, wider by `margin` all around, with round corners and without stairs. With a margin of the contact
+/// radius the shape touches other things where the body does. Gaps that are one cell wide stay open. Deterministic.
 /// @param margin   in cells, 0..kMaxSkinMargin
-/// @param outside  a shape that is drawn in place of the cells, wider by the margin: a disc is round, however few cells
+/// @param outside  a shape that is drawn instead of the cells, wider by the margin: a disc is round, however few cells
 ///                 it has. Its edge lies no farther than a cell outside of the cells.
 /// @pre  the lattice has cells
 Skin2d make_skin_2d(const Lattice<2>& lattice, float margin, const Outside2d& outside = {});
@@ -92,7 +91,7 @@ Skin2d make_cover_2d(const Lattice<2>& lattice, const std::function<bool(const E
 /// @pre  the piece is a part of that lattice
 Skin2d skin_of_piece(const Skin2d& whole, const Lattice<2>& lattice, const Lattice<2>& piece);
 
-/// The point of a cell, also of one that it is outside of.
+/// The point bound to a cell, also if it lies outside of the cell.
 /// @param cell  its number  @param at  grid coordinates: a particle of the lattice is at its grid index
 CellPoint2d point_in_cell(const Lattice<2>& lattice, std::uint32_t cell, const Eigen::Vector2f& at);
 
@@ -101,7 +100,7 @@ CellPoint2d point_in_cell(const Lattice<2>& lattice, std::uint32_t cell, const E
 /// @pre  the lattice has cells
 CellPoint2d point_in_cells(const Lattice<2>& lattice, const Eigen::Vector2f& at);
 
-/// Computes the positions of the vertices (metres) and the slopes there, turned and stretched with the cells. Any thread.
+/// Computes the positions of the vertices (metres) and the slopes there, rotated and stretched with the cells. Any thread.
 /// @param particles  positions of the lattice's particles, metres
 /// @param positions,slopes  receive one value for each vertex
 /// @pre  both have as many elements as skin.rest; `particles` has one for each particle of the lattice

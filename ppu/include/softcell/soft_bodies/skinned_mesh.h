@@ -1,6 +1,6 @@
 #pragma once
-// The surface of a soft body as floats, to be drawn: the mesh that its model was made from, deformed with the
-// body. Vertices have the order, and triangles the indices, of the mesh as it was given.
+// The surface of a soft body as floats, to be drawn: the mesh that its model was made from, deformed with the body. Vertices and indices
+// are in the order of the original mesh.
 //
 //     SkinnedMesh skin(body.shared_model());             // once for each body
 //     ...
@@ -8,8 +8,8 @@
 //     upload(skin.positions(), skin.normals());          // one of each for every vertex of skin.mesh()
 //     draw(skin.mesh().triangles);                       // skin.mesh() also has texture coordinates, colours, parts
 //
-// The calling thread does the work, also for a body that SPEs step. SpeSkinner (spe_bodies/spe_skinner.h) has
-// the SPEs do it, one frame late.
+// The calling thread does the work, also for a body that SPEs step. With SpeSkinner (spe_bodies/spe_skinner.h) the SPEs do it, one frame
+// late.
 
 #include <Eigen/Core>
 #include <memory>
@@ -34,23 +34,23 @@ namespace softcell::ppu {
 void skin(const SoftBody<3>& body, std::span<Eigen::Vector3f> positions, std::span<Eigen::Vector3f> normals);
 
 /// The mesh of body.model() in the body's rest shape, with all its attributes: the shape of a plastic body without loads. Bodies of a model
-/// made from this mesh begin with the dents. @pre the model has a mesh
+/// made from this mesh have the dents from the beginning. @pre the model has a mesh
 TriangleMesh rest_mesh(const SoftBody<3>& body);
 
 /// A deformed mesh with memory of its own. Used by one thread at a time.
 class SkinnedMesh {
  public:
-  /// The mesh as it was given, around the model's own origin. A model without a mesh has no vertices.
+  /// The original mesh, around the model's own origin. A model without a mesh has no vertices.
   explicit SkinnedMesh(std::shared_ptr<const SoftBodyModel<3>> model);
 
   /// Computes positions and normals of the body as it is now. Allocates nothing.
-  /// @throws std::invalid_argument  the body is one of another model.
+  /// @throws std::invalid_argument  the body has another model.
   void update(const SoftBody<3>& body);
 
   std::span<const Eigen::Vector3f> positions() const { return positions_; }  ///< metres, of each vertex
   std::span<const Eigen::Vector3f> normals() const { return normals_; }      ///< unit vectors, of each vertex
 
-  /// The mesh at rest: triangles, texture coordinates, colours and parts are those of the deformed one, too.
+  /// The mesh at rest. The deformed one has the same triangles, texture coordinates, colours and parts.
   const TriangleMesh& mesh() const { return model_->mesh(); }
 
  private:

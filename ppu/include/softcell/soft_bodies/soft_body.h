@@ -1,8 +1,8 @@
 #pragma once
 // The moving state of one soft body, without an engine.
 //
-// An engine integrates the particles (bullet/bullet_soft_bodies.h, box2d/box2d_soft_bodies.h). What makes them
-// one body is SoftBody::pull(), which is called once per time step.
+// An engine integrates the particles (bullet/bullet_soft_bodies.h, box2d/box2d_soft_bodies.h). SoftBody::pull(), which is called once per
+// time step, keeps them together as one body.
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -51,7 +51,7 @@ class SoftBody {
   using Rotation = typename Turning<kDimension>::Rotation;
   using AxialVector = typename Turning<kDimension>::AxialVector;
 
-  /// At rest, undeformed, the model's own origin at `position` (metres).
+  /// A body at rest, undeformed, the model's own origin at `position` (metres).
   explicit SoftBody(std::shared_ptr<const SoftBodyModel<kDimension>> model,
                     const Vector& position = Vector::Zero());
   /// Copies the whole state of the other, with the rotations of its regions.
@@ -64,7 +64,7 @@ class SoftBody {
   SoftBody& operator=(SoftBody&& other) noexcept;
   ~SoftBody();
 
-  /// What the body shares with all bodies of its kind. Assigning a body of another model changes it.
+  /// The data that the body shares with all bodies of its kind. Assigning a body of another model changes it.
   const SoftBodyModel<kDimension>& model() const { return *model_; }
   /// The same, for code that needs the model longer than the body lives.
   const std::shared_ptr<const SoftBodyModel<kDimension>>& shared_model() const { return model_; }
@@ -83,8 +83,8 @@ class SoftBody {
   /// Shape matching and damping: changes velocities, conserves momentum and angular momentum, moves nothing.
   /// @throws std::runtime_error  a particle is NaN or infinite; nothing has changed then.
   void pull(float step);
-  /// In place of pull(), for a solver that has computed what shape matching and damping make of positions() and velocities(). What it
-  /// has lost of both momenta by rounding comes back.
+  /// Called instead of pull() by a solver that has computed shape matching and damping from positions() and velocities(). Momenta that the
+  /// solver has lost by rounding are returned.
   /// @param velocity_of  returns particle i's velocity in m/s for each i
   template <typename VelocityOf>
   void take_pulled(const VelocityOf& velocity_of) {
@@ -109,10 +109,10 @@ class SoftBody {
   /// Lets a plastic body flow: changes its rest shape. Call it in each time step after pull(). Every kPlasticSteps-th call looks at the
   /// strains. If the body may yield, another thread computes the flow, and the call kFlowSteps steps later applies the result, for which it
   /// may have to wait. Only such steps allocate memory.
-  /// @param stretch  how much distances differ from those of the rest shape, as the SPEs' solver has seen it: spares most looks, and changes
-  ///                 no result. Nothing: nobody has looked
+  /// @param stretch  how much distances differ from those of the rest shape, as the SPEs' solver has measured it: saves most looks, and
+  ///                 does not change results. Nothing: not measured
   void flow(float step, std::optional<float> stretch = {});
-  /// The next flow() looks at the strains.
+  /// Whether the next flow() looks at the strains.
   bool will_look() const;
   static constexpr int kPlasticSteps = 4, kFlowSteps = 1;
 
@@ -127,23 +127,23 @@ class SoftBody {
   /// Sets a particle's velocity (m/s), which a coupling has computed.
   void set_velocity(std::size_t particle, const Vector& velocity) { v_[particle] = velocity; }
 
-  /// Whether the body sleeps. Solvers do not step it then. Couplings put bodies to sleep and wake them.
+  /// Whether the body sleeps. Solvers do not step a sleeping body. Couplings put bodies to sleep and wake them.
   bool asleep() const { return asleep_; }
   void set_asleep(bool asleep);  ///< for couplings
 
   // For the user, between time steps. Each of these functions increments revision(), which tells a coupling of the
   // change. Functions that make the rotations of the last step useless also increment resets().
 
-  /// Changes stiffness, damping, friction and restitution; the next time step has them.
+  /// Changes stiffness, damping, friction and restitution from the next time step on.
   /// @throws std::runtime_error  as validate(); nothing has changed then
   /// @pre cell_size, half_width, density and contacts are the model's
   void set_material(const SoftBodySettings& settings);
   void translate(const Vector& by);  ///< metres; finite
   /// Puts the body back into the model's shape, at rest, with the model's own origin at `position` (metres).
   void reset(const Vector& position);
-  /// Teleports the body: turns it about its centre of mass, then moves it by `translation` (metres). Velocities turn with the body.
+  /// Teleports the body: rotates it about its centre of mass, then moves it by `translation` (metres). Velocities rotate with the body.
   void move_without_force(const Rotation& rotation, const Vector& translation);
-  /// Puts the body back into the model's shape, a plastic body too. Keeps its centre, mean orientation and both momenta.
+  /// Puts the body back into the model's shape, also a plastic body. Keeps its centre, mean orientation and both momenta.
   void reset_deformation();
   /// Gives the body another rest shape, for example that of a saved body: the position of each particle in metres, in any frame.
   /// @throws std::runtime_error  a position is not finite, there are more or fewer than particles, a cell is flat, turned inside out as those
@@ -151,7 +151,7 @@ class SoftBody {
   void set_rest_positions(std::span<const Vector> rest);
   void add_velocity(const Vector& dv);                                 ///< m/s, to every particle
   void add_particle_velocity(std::size_t particle, const Vector& dv);  ///< m/s
-  /// Adds a turn about the centre of mass, in rad/s, to every particle's velocity.
+  /// Adds a rotation about the centre of mass, in rad/s, to every particle's velocity.
   void add_angular_velocity(const AxialVector& dw);
   /// Whether the body has a rest shape of its own, because it has yielded or set_rest_positions() gave it one.
   bool has_own_rest() const;
@@ -189,7 +189,7 @@ class SoftBody {
   std::shared_ptr<const SoftBodyModel<kDimension>> model_;
   SoftBodySettings settings_;
   std::vector<Vector> x_, v_;
-  std::vector<Vector> pulled_;           // velocities that end_pull() makes v_
+  std::vector<Vector> pulled_;           // results of pull(); end_pull() makes them v_
   std::vector<Eigen::Vector4f> padded_;  // x_ again, in three dimensions
   std::unique_ptr<ShapeMatcher<float, kDimension>> matcher_;
   std::unique_ptr<LostMomenta<kDimension>> lost_;

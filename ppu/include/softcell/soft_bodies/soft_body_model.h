@@ -1,5 +1,5 @@
 #pragma once
-// What all soft bodies of one kind share: the lattice, its masses, and what is computed from them once.
+// Data that all soft bodies of one kind share: the lattice, its masses, and constants computed from them once.
 
 #include <cstddef>
 #include <cstdint>
@@ -23,12 +23,12 @@ class MatchingPlan;
 template <int kDimension>
 class RestLattice;
 
-/// What bodies of one kind share. No public function changes it, so any thread may read it.
+/// The data that bodies of one kind share. No public function changes it, so any thread may read it.
 /// @tparam kDimension  2 or 3
 template <int kDimension>
 class SoftBodyModel {
  public:
-  const SoftBodySettings& settings() const { return settings_; }   ///< as the model was made
+  const SoftBodySettings& settings() const { return settings_; }   ///< as passed when the model was made
   const Lattice<kDimension>& lattice() const { return lattice_; }  ///< at rest, in the mesh's own frame
   std::size_t particles() const { return masses_.size(); }         ///< their number
   std::span<const float> masses() const { return masses_; }        ///< kg, of each particle
@@ -36,24 +36,22 @@ class SoftBodyModel {
 
   /// Numbers of the outer particles, ascending. Outer particles collide; a body without contacts has none.
   ///
-  /// In two dimensions a particle is outer if fewer than four cells surround it; in a piece, so are the next particles behind its cuts. In
-  /// three dimensions all corners of the cells at the lattice's boundary are outer, so outer particles lie two deep. One layer would keep
-  /// things out, but a body that is pressed flat on a floor would push its second layer, which also carries the mesh, through the first
-  /// layer and the floor.
+  /// In two dimensions a particle is outer if fewer than four cells surround it; in a piece, the next particles behind its cuts are outer,
+  /// too. In three dimensions all corners of the cells at the lattice's boundary are outer, so outer particles form two layers. One layer
+  /// would keep other things out, but a body that is pressed flat on a floor would push its second layer, which also carries the mesh,
+  /// through the first layer and the floor.
   std::span<const std::uint32_t> outer() const { return outer_; }
   std::span<const std::uint32_t> inner() const { return inner_; }  ///< all others, ascending
 
   /// Radius in metres of the circle or sphere with which an outer particle collides.
   ///
-  /// In three dimensions the mesh lies inside its lattice, and every mesh vertex between the eight corners of
-  /// its cell: while no particle's centre is below a floor, neither is the mesh. The radius adds nothing but
-  /// distance between the mesh and what it lies on. It is as small as contacts work well with, 0.15 cells,
-  /// the same for all; the mesh's lowest point comes to rest that much above the floor, plus its own distance
-  /// to the lattice's boundary.
+  /// In three dimensions the mesh lies inside its lattice, and every mesh vertex between the eight corners of its cell: while no particle's
+  /// centre is below a floor, the mesh is not below it either. The radius only adds distance between the mesh and what it lies on. It is
+  /// 0.15 cells for all bodies, as small as contacts work well with; the mesh's lowest point comes to rest that much above the floor, plus
+  /// its own distance to the lattice's boundary.
   ///
-  /// In two dimensions make_soft_body_model() has it as a parameter. Circles of half a cell, the default,
-  /// touch each other: nothing gets between the particles of a body, and things meet it half a cell before
-  /// they meet what is drawn. Smaller ones let small things in.
+  /// In two dimensions it is a parameter of make_soft_body_model(). Circles of half a cell, the default, touch each other: nothing gets
+  /// between the particles of a body, and other things stop half a cell before the drawn shape. Smaller circles let small things in.
   float contact_radius() const { return contact_radius_in_cells_ * lattice_.spacing; }
   /// Contact radius of one particle, metres. In two dimensions particles at a cut have half of it, because no material reaches beyond a cut.
   float contact_radius(std::size_t particle) const {
@@ -63,16 +61,16 @@ class SoftBodyModel {
   bool is_at_cut(std::size_t particle) const { return !at_cut_.empty() && at_cut_[particle]; }
   static constexpr float kContactRadiusInCells = kDimension == 2 ? 0.5f : 0.15f;
 
-  /// Radius in metres of that sphere towards particles of other soft bodies. A particle must meet a lattice of equal cells wherever it
-  /// arrives, also in the middle of a face: 2 r > s / sqrt(2). Some reserve is needed, because a face gives way: at 0.40 cells 5 of 30
-  /// pairs of balls came to rest inside each other, at 0.45 none.
+  /// Radius in metres of an outer particle's sphere towards particles of other soft bodies. A particle must touch a lattice of equal cells
+  /// wherever it arrives, also in the middle of a face: 2 r > s / sqrt(2). Some reserve is needed, because a face gives way: at 0.40 cells
+  /// 5 of 30 pairs of balls came to rest inside each other, at 0.45 none.
   float soft_contact_radius() const requires(kDimension == 3) {
     return kSoftContactRadiusInCells * lattice_.spacing;
   }
   static constexpr float kSoftContactRadiusInCells = 0.45f;
 
-  /// The mesh that the model was made from, with its attributes, at rest; empty for a model made from a
-  /// lattice alone. skinned_mesh.h has it deformed.
+  /// The mesh that the model was made from, with its attributes, at rest; empty for a model made from a lattice alone. skinned_mesh.h
+  /// deforms it.
   const TriangleMesh& mesh() const requires(kDimension == 3);
 
   // For solvers and for skinning.
@@ -82,16 +80,16 @@ class SoftBodyModel {
   const Embedding& embedding() const requires(kDimension == 3) { return *embedding_; }
   /// Constants of its particles and regions.
   const std::shared_ptr<const MatchingPlan<float, kDimension>>& plan() const { return plan_; }
-  /// What plastic bodies of this model flow with. The first call makes it, which takes 6 ms for 1,000 particles; a model whose settings have
-  /// a plasticity has it from the beginning.
-  /// @throws std::runtime_error  the model has too many particles for plastic bodies; the sentence says how many it may have.
+  /// Data with which plastic bodies of this model flow. The first call makes it, which takes 6 ms for 1,000 particles; a model with a
+  /// plasticity in its settings has it from the beginning.
+  /// @throws std::runtime_error  the model has too many particles for plastic bodies; the message says how many it may have.
   const std::shared_ptr<const RestLattice<kDimension>>& rest_lattice() const;
-  /// Where its bodies can break, and where they are broken. The first call makes it, which takes some milliseconds; a model whose settings
-  /// have a fracture has it from the beginning.
+  /// Where the model's bodies can break, and where they are broken. The first call makes it, which takes some milliseconds; a model with a
+  /// fracture in its settings has it from the beginning.
   const Cracks<kDimension>& cracks() const;
   /// Whether this is the model of a piece of a broken body (fracture.h).
   bool is_piece() const { return whole_ != nullptr; }
-  /// The model of the body before it first broke; null if this is no model of a piece.
+  /// The model of the body before it first broke; null if this is not the model of a piece.
   const std::shared_ptr<const SoftBodyModel>& whole() const { return whole_; }
 
  private:
@@ -127,8 +125,8 @@ extern template class SoftBodyModel<3>;
 std::shared_ptr<const SoftBodyModel<3>> make_soft_body_model(const TriangleMesh& mesh,
                                                              const SoftBodySettings& settings);
 
-/// How strong the material is at a place of the mesh at rest (metres): the limits of SoftBodySettings::fracture times this. 0 or above, and
-/// finite.
+/// The strength of the material at a place of the mesh at rest (metres): a factor for the limits of SoftBodySettings::fracture. 0 or above,
+/// and finite.
 using StrengthField = std::function<float(const Eigen::Vector3f&)>;
 
 /// The same for a body that breaks more easily in some places: the strength of a cell is that of its middle.
@@ -149,7 +147,7 @@ std::shared_ptr<const SoftBodyModel<2>> make_soft_body_model(
     Lattice<2> lattice, const SoftBodySettings& settings,
     float contact_radius_in_cells = SoftBodyModel<2>::kContactRadiusInCells);
 
-/// How strong the material is at a place of the lattice at rest (metres), as StrengthField says it in three dimensions.
+/// The strength of the material at a place of the lattice at rest (metres), as StrengthField in three dimensions.
 using StrengthField2d = std::function<float(const Eigen::Vector2f&)>;
 
 /// The same for a body that breaks more easily in some places: the strength of a cell is that of its middle.

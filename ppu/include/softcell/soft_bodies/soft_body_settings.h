@@ -6,18 +6,18 @@
 
 namespace softcell::ppu {
 
-/// What a body keeps of deformations. Where the strain is above the yield, the rest shape flows towards the present shape. The strain of
-/// a bar that is pulled is its elongation; that of a bent bar is half its thickness times its curvature. The volume at rest stays.
+/// How much of a deformation remains. Where the strain is above the yield, the rest shape flows towards the present shape. The strain of a
+/// bar that is pulled is its elongation; that of a bent bar is half its thickness times its curvature. The volume at rest stays the same.
 struct Plasticity {
-  float yield = 0.1f;  ///< above 0, at most 1: the strain below which a deformation is elastic and goes back
-  float creep = 10;    ///< 1/s, above 0: what is above the yield falls to 1/e in 1 / creep seconds
+  float yield = 0.1f;  ///< above 0, at most 1: the strain below which a deformation is elastic
+  float creep = 10;    ///< 1/s, above 0: the strain above the yield falls to 1/e in 1 / creep seconds
   /// Above 0: at rest no edge of a cell gets longer than 1 + limit cells, or shorter than 1 / (1 + limit) cells.
   float limit = 1;
 
   bool operator==(const Plasticity&) const = default;
 };
 
-/// When a body breaks, along the faces between its cells (fracture.h). A face breaks as soon as one of the two measures passes its limit.
+/// When a body breaks, along the faces between its cells (fracture.h). A face breaks as soon as one of the two measures exceeds its limit.
 /// A measure without a limit breaks nothing. The limits are for a strength of 1; a model can be weaker or stronger in some of its cells.
 struct Fracture {
   /// Above 0: how far the middles of two neighbouring cells may move apart, as a share of a cell's edge.
@@ -25,8 +25,8 @@ struct Fracture {
   /// Radians, above 0, up to pi: how far two neighbouring cells may turn against each other.
   std::optional<float> turn = {};
   /// Cells, 1 and up. When the body breaks or is cut, pieces of fewer cells vanish and take their mass and momenta with them. The largest
-  /// piece, which is the body itself, stays whatever its size. An attachment whose patch is in a piece that vanishes ends as those to a
-  /// removed body do (EndedAttachment::Reason::kGone). With 1 nothing vanishes.
+  /// piece, which is the body itself, stays whatever its size. An attachment whose patch is in a piece that vanishes ends as if its body
+  /// were removed (EndedAttachment::Reason::kGone). With 1 nothing vanishes.
   std::uint32_t least_cells = 1;
 
   bool operator==(const Fracture&) const = default;
@@ -34,8 +34,8 @@ struct Fracture {
 
 /// Detail, material and contacts of a soft body. Only `cell_size` has no default.
 ///
-/// `alpha` and `damping` act per time step, so the same numbers make a stiffer and calmer body with shorter
-/// steps. `frequency` and `damping_time` say the same in hertz and seconds and take the step into account.
+/// `alpha` and `damping` act per time step, so with shorter steps the same numbers make a body stiffer and more damped. `frequency` and
+/// `damping_time` say the same in hertz and seconds and take the step into account.
 struct SoftBodySettings {
   float cell_size = 0;    ///< edge of a lattice cell, metres
   int half_width = 2;     ///< of a region, links; stiffness grows with its square; 0..16
@@ -44,7 +44,7 @@ struct SoftBodySettings {
   float damping = 0.05f;  ///< 0..1: the share of the deviation from rigid motion taken away in one step
   /// Coefficient of friction, 0 and up. In Bullet it is multiplied by that of the other body; Box2D takes the geometric mean of both.
   float friction = 0.6f;
-  /// 0..1: the share of its speed with which the body as a whole leaves what it hits. In Bullet it is multiplied by that of the other
+  /// 0..1: the fraction of its speed with which the body as a whole leaves what it hits. In Bullet it is multiplied by that of the other
   /// body; Box2D takes the larger one.
   float restitution = 0;
   bool contacts = true;  ///< false: nothing touches the body, and all its particles are inner ones
@@ -64,10 +64,10 @@ struct SoftBodySettings {
 /// When bodies fall asleep. A sleeping body costs its solver nothing, and its coupling next to nothing.
 struct SleepSettings {
   float speed = 0.05f;  ///< m/s: a body rests while its mean_speed() is below this
-  float seconds = 1;    ///< a body that has rested for so long falls asleep
+  float seconds = 1;    ///< a body that has rested for this time falls asleep
 };
 
-/// @throws std::runtime_error  a value is out of its range; the sentence names it and the range.
+/// @throws std::runtime_error  a value is out of its range; the message names the value and the range.
 void validate(const SoftBodySettings& settings);
 
 }  // namespace softcell::ppu

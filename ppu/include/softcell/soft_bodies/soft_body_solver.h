@@ -27,21 +27,20 @@ class SoftBodySolver {
   /// @throws std::runtime_error  a particle is NaN or infinite, or an SPE failed.
   virtual void finish() = 0;
 
-  /// Waits for the step that kick() has begun and discards its result: no body changes. The next step starts
-  /// from the rotations that SPEs have found by then. Its result is the same if these had converged, and
-  /// otherwise within the tolerance of the iteration.
+  /// Waits for the step that kick() has begun and discards its result: no body changes. The next step starts from the rotations that SPEs
+  /// have found by then. If these had converged, its result is the same; otherwise it is the same within the tolerance of the iteration.
   virtual void drop() = 0;
 
-  /// Discards what the solver knows of the body from earlier steps. Call it after the body was teleported and
-  /// before it is destroyed. @pre no step is under way.
+  /// Discards what the solver knows of the body from earlier steps. Call it after the body was teleported and before it is destroyed. @pre
+  /// no step is under way.
   virtual void forget(const SoftBody<kDimension>& body) = 0;
 
-  /// Prepares for bodies of a model that will be stepped soon: makes now what takes long to make. Any thread may call it at any time. It
-  /// changes no result.
+  /// Prepares for bodies of a model that will be stepped soon: makes slow data now. Any thread may call it at any time. It does not change
+  /// results.
   virtual void prepare(const std::shared_ptr<const SoftBodyModel<kDimension>>& /*model*/) {}
 
-  /// Hands what the solver knows of a body on to a piece of it. Call it for each piece, after the last step of the whole body. The piece's
-  /// model was prepared. The body that is stepped next may be another object of the same model.
+  /// Passes what the solver knows of a body on to a piece of it. Call it for each piece, after the last step of the whole body. The piece's
+  /// model must have been prepared. The body that is stepped next may be another object of the same model.
   /// @param whole  the body that broke   @param piece  one of its pieces
   /// @param particle_of  for each particle of the piece, its number in the whole
   /// @pre no step is under way
@@ -49,8 +48,8 @@ class SoftBodySolver {
                              [[maybe_unused]] const SoftBody<kDimension>& piece,
                              [[maybe_unused]] std::span<const std::uint32_t> particle_of) {}
 
-  /// Whether a face of the body may have broken before the step that finish() has ended last. A solver that has looked, and has seen that
-  /// none has, returns false and spares the caller the look. @pre nothing has moved the body since finish()
+  /// Whether a face of the body may have broken before the step that finish() ended last. A solver that has checked that none has returns
+  /// false, which saves the caller the check. @pre nothing has moved the body since finish()
   virtual bool may_break(const SoftBody<kDimension>& /*body*/) const { return true; }
 };
 
@@ -68,7 +67,7 @@ class PpuSolver final : public SoftBodySolver<kDimension> {
     bodies_.clear();
   }
   void drop() override { bodies_.clear(); }
-  void forget(const SoftBody<kDimension>&) override {}  // a SoftBody keeps what it needs itself
+  void forget(const SoftBody<kDimension>&) override {}  // a SoftBody keeps its own rotations
 
  private:
   std::vector<SoftBody<kDimension>*> bodies_;

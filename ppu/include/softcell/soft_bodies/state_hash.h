@@ -8,13 +8,13 @@
 
 namespace softcell::ppu {
 
-/// Hash over the positions and velocities of a body's particles, and its rest shape if it has yielded. For several bodies, pass on the hash of
-/// those before: state_hash(b, state_hash(a)). The order counts.
+/// Hash of the positions and velocities of a body's particles, and of its rest shape if it has yielded. For several bodies, pass on the
+/// hash of the bodies before: state_hash(b, state_hash(a)). The order counts.
 /// @source  XXH3, the 64-bit variant; `before` is its seed
 std::uint64_t state_hash(const SoftBody<2>& body, std::uint64_t before = 0);
 std::uint64_t state_hash(const SoftBody<3>& body, std::uint64_t before = 0);
 
-/// Of several bodies, in order.
+/// The hash of several bodies, in order.
 std::uint64_t state_hash(std::span<const SoftBody<3>* const> bodies);
 
 }  // namespace softcell::ppu

@@ -1,5 +1,5 @@
 #pragma once
-// Rays, moved spheres and distances against the drawn surface of a soft body as it is now; in two dimensions circles and the drawn edge.
+// Rays, moving spheres and distances against the present drawn surface of a soft body; in two dimensions circles and the drawn edge.
 //
 //     const SurfaceQuery surface(body);                       // after a step; valid until the next one
 //     if (auto hit = surface.cast_ray(eye, eye + 100 * look)) mark(hit->position, hit->normal);
@@ -20,11 +20,11 @@
 
 namespace softcell::ppu {
 
-/// Where something meets a surface.
+/// The point where a ray or sphere meets a surface.
 template <int kDimension>
 struct SurfaceHit {
   using Vector = Eigen::Vector<float, kDimension>;
-  float share = 0;                   ///< 0..1, of the way
+  float share = 0;                   ///< 0..1, fraction of the motion
   Vector position = Vector::Zero();  ///< metres, on the surface
   Vector normal = Vector::UnitY();   ///< unit length, out of the body
   std::uint32_t face =
@@ -41,11 +41,11 @@ class SurfaceQuery {
   using Vector = Eigen::Vector<float, kDimension>;
   using Hit = SurfaceHit<kDimension>;
 
-  /// Takes about half a microsecond for each triangle. In two dimensions it makes a skin, as make_skin_2d() does with the contact radius of
-  /// the model, which takes longer than what follows.
+  /// Takes about half a microsecond for each triangle. In two dimensions it also makes a skin, as make_skin_2d() does with the contact
+  /// radius of the model, which takes longer than the rest.
   /// @throws std::runtime_error  a particle is not finite.
   explicit SurfaceQuery(const SoftBody<kDimension>& body);
-  /// Of a body in two dimensions that is drawn with a skin of its own. @pre the skin has outlines, and is made for the body's lattice
+  /// For a body in two dimensions that is drawn with its own skin. @pre the skin has outlines, and is made for the body's lattice
   /// @throws std::runtime_error  a particle is not finite.
   template <std::same_as<Skin2d> Skin>
   requires(kDimension == 2) SurfaceQuery(const SoftBody<kDimension>& body, const Skin& drawn);
@@ -54,8 +54,8 @@ class SurfaceQuery {
   /// body, not towards the ray. @pre both are finite
   std::optional<Hit> cast_ray(const Vector& from, const Vector& to) const;
 
-  /// Where a sphere that moves from `from` to `to` (metres) first touches the surface from outside. If the sphere touches at `from`, the
-  /// share is 0. The normal points from the surface to the sphere's centre. @param radius  metres, above 0
+  /// The point where a sphere that moves from `from` to `to` (metres) first touches the surface from outside. If the sphere touches at
+  /// `from`, the share is 0. The normal points from the surface to the sphere's centre. @param radius  metres, above 0
   std::optional<Hit> cast_sphere(const Vector& from, const Vector& to, float radius) const;
 
   /// Metres from a point to the nearest place of what is drawn; below 0 inside the body. Where parts of the surface reach into each other, or
@@ -67,7 +67,7 @@ class SurfaceQuery {
 
  private:
   using Face = std::array<Vector, kDimension>;
-  /// A box around `count` faces from `first` on, or, with a count of 0, around the nodes `first` and first + 1.
+  /// A box around `count` faces from `first` on; with a count of 0, around the nodes `first` and first + 1.
   struct Node {
     Bounds<kDimension> box;
     std::uint32_t first = 0, count = 0;
@@ -85,7 +85,7 @@ class SurfaceQuery {
   };
 
   explicit SurfaceQuery(std::vector<Face> faces);
-  /// Calls `work` with faces, the nearest boxes' first, while their boxes' cost is no more than limit().
+  /// Calls `work` with faces, beginning with those in the nearest boxes, while the cost of a box is no more than limit().
   template <typename Cost, typename Limit, typename Work>
   void visit(const Cost& cost, const Limit& limit, const Work& work) const;
   void build(std::uint32_t node, std::uint32_t first, std::uint32_t count);
@@ -95,10 +95,10 @@ class SurfaceQuery {
   Hit hit_of(std::uint32_t face, float share, const Vector& position) const;
 
   std::vector<Face> faces_;             ///< in the order of the tree
-  std::vector<std::uint32_t> numbers_;  ///< of these in the surface
+  std::vector<std::uint32_t> numbers_;  ///< for each of these: its number in the surface
   std::vector<bool> is_narrow_;         ///< of these: which way they look is rounding
   std::vector<Node> nodes_;             ///< the root first
-  float outwards_ = 1;                  ///< -1 of a surface whose faces look inwards
+  float outwards_ = 1;                  ///< -1 if the surface's faces look inwards
 };
 
 extern template class SurfaceQuery<2>;

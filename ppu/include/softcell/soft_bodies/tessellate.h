@@ -1,5 +1,5 @@
 #pragma once
-// Divides the triangles of a coarse mesh. A soft body is drawn, and touches, with its triangles; a surface bends only at their vertices.
+// Divides the triangles of a coarse mesh. A soft body is drawn, and touches, with its triangles; its surface bends only at their vertices.
 //
 //     const auto model = make_soft_body_model(tessellate(mesh, settings.cell_size), settings);
 
@@ -8,7 +8,7 @@
 namespace softcell::ppu {
 
 /// Returns the same shape with no edge longer than `longest_edge`: longer edges are halved until none is left. Edges as long as a cell
-/// follow the lattice; shorter ones cost vertices and show nothing more.
+/// follow the lattice; shorter ones cost vertices without showing more.
 ///
 /// The mesh's own vertices do not change and keep their numbers. New vertices in the middle of edges follow them and have the mean of both
 /// ends' attributes. Triangles stay in their parts. Whether an edge is halved depends only on the positions of its ends, so all triangles

@@ -1,6 +1,5 @@
 #pragma once
-// The surfaces of soft bodies as vertex buffers of half floats, made by the SPEs and ready for upload, one
-// frame late.
+// Makes the surfaces of soft bodies on the SPEs as vertex buffers of half floats, ready for upload, one frame late.
 //
 //     SpeSkinner skinner(spes);                                  // an SpeRuntime
 //     skinner.add(body);                                         // once for each body
@@ -40,17 +39,17 @@ struct alignas(16) HalfVertex {
 
 /// The vertices of one body.
 struct SkinnedVertices {
-  /// Of draw_order(model).mesh_vertex.size(); empty before the body's first frame is finished. Valid until
-  /// the next begin_frame(), finish_frame(), add() or remove().
+  /// draw_order(model).mesh_vertex.size() vertices; empty before the body's first frame is finished. Valid until the next begin_frame(),
+  /// finish_frame(), add() or remove().
   std::span<const HalfVertex> vertices;
-  Eigen::Vector3f origin{0, 0, 0};  ///< metres, world: what all positions are relative to in this frame
+  Eigen::Vector3f origin{0, 0, 0};  ///< metres, world: all positions in this frame are relative to it
 };
 
 /// How the vertices of all bodies of one model are drawn. Valid as long as the model.
 struct DrawOrder {
   std::span<const std::uint32_t> indices;  ///< three vertices for each triangle of model.mesh(), in order
-  /// For each vertex the number of the mesh's vertex that it is. The SPEs skin four vertices of a lattice cell
-  /// at a time: vertices have another order than the mesh's, and some occur twice.
+  /// For each vertex its number in the mesh. The SPEs skin four vertices of a lattice cell at a time, so vertices have another order than
+  /// in the mesh, and some occur twice.
   std::span<const std::uint32_t> mesh_vertex;
 
   /// An attribute of the mesh's vertices (texture coordinates, colours) in this order.
@@ -69,39 +68,38 @@ DrawOrder draw_order(const SoftBodyModel<3>& model);
 /// Skins bodies on SPEs. Used by one thread, between the steps of the bodies.
 class SpeSkinner {
  public:
-  /// @param spes  outlives the skinner. @throws std::runtime_error  as SpeRuntime::kernel().
+  /// @param spes  must outlive the skinner. @throws std::runtime_error  as SpeRuntime::kernel().
   explicit SpeSkinner(SpeRuntime& spes);
-  /// For a job system of one's own. `skin` is the image of that kernel. All three outlive the skinner.
+  /// For your own job system. `skin` is the image of that kernel. All three must outlive the skinner.
   SpeSkinner(dma::AddressSpace& memory, JobSystem& jobs, const ls_sim::KernelImage& skin);
   /// Waits for the SPEs.
   ~SpeSkinner();
   SpeSkinner(const SpeSkinner&) = delete;
   SpeSkinner& operator=(const SpeSkinner&) = delete;
 
-  /// Waits for the frame under way and adds a body to the ones to come. The body stays where it is until
-  /// remove(). A body that breaks, is cut or is assigned to has another model: remove() it before the next frame and
-  /// add() it again, and its other pieces.
+  /// Waits for the frame under way and adds a body to the frames to come. The body must stay in place until remove(). A body that breaks,
+  /// is cut or is assigned to has another model: remove() it before the next frame and add() it again, and its other pieces.
   /// @throws std::invalid_argument  its model has no mesh, or it was added before.
   /// @throws std::runtime_error     main memory is full; as finish_frame().
   void add(const SoftBody<3>& body);
-  /// Waits for the frame under way and takes a body out: call it before the body goes.
+  /// Waits for the frame under way and removes a body: call it before the body is destroyed.
   /// @throws std::invalid_argument  it was not added. @throws std::runtime_error  as finish_frame().
   void remove(const SoftBody<3>& body);
 
-  /// Copies where the particles of all bodies are now and has the SPEs begin to skin them. Never waits: when
-  /// the SPEs have not finished the frame before, nothing is done, and the picture stays as it is.
+  /// Copies the present positions of all particles and starts skinning on the SPEs. Never waits: if the SPEs have not finished the frame
+  /// before, it does nothing, and the picture stays as it is.
   /// @return whether a frame has begun.
-  /// @throws std::runtime_error  a job of the frame before has failed, or a body has another model than when it was added; the
-  ///                             sentence says which.
+  /// @throws std::runtime_error  a job of the previous frame has failed, or a body has another model than when it was added; the
+  ///                             message says which.
   bool begin_frame();
 
-  /// Waits for the frame under way, if there is one, and makes it the one that vertices() shows: for pictures
-  /// that must not depend on the speed of the host, and for a single one.
-  /// @throws std::runtime_error  a job of it has failed; the sentence says why.
+  /// Waits for the frame under way, if there is one, and makes it the one that vertices() shows: for pictures that must not depend on the
+  /// speed of the host, and for a single picture.
+  /// @throws std::runtime_error  one of its jobs has failed; the message says why.
   void finish_frame();
 
-  /// The body's vertices of the newest frame that is finished. Each begin_frame() makes the frame finished
-  /// that began before it: vertices are one frame late.
+  /// The body's vertices in the newest finished frame. Each begin_frame() makes the frame before it the finished one, so vertices are one
+  /// frame late.
   /// @throws std::invalid_argument  the body was not added.
   SkinnedVertices vertices(const SoftBody<3>& body) const;
 

@@ -1,6 +1,6 @@
 #pragma once
-// Shape matching and damping of soft bodies on the SPEs, in two dimensions by the kernel `match_2d`, in three
-// by `match` and `match_tiles`.
+// Shape matching and damping of soft bodies on the SPEs: in two dimensions with the kernel `match_2d`, in three with `match` and
+// `match_tiles`.
 //
 //     SpeSolver<3> solver(memory, jobs, {match, match_tiles, &strain});   // the kernels' images
 //     BulletSoftBodies soft_bodies(world, solver);
@@ -27,30 +27,30 @@ struct MatchKernels;
 template <>
 struct MatchKernels<2> {
   const ls_sim::KernelImage& match_2d;  ///< steps bodies that fit a local store
-  /// Looks whether bodies yield or break. Null: the PPU does. Of the same flavour.
+  /// Checks whether bodies yield or break. Null: the PPU does it. Checked if `match_2d` is.
   const ls_sim::KernelImage* strain = nullptr;
 };
 /// In three dimensions.
 template <>
 struct MatchKernels<3> {
   const ls_sim::KernelImage& match;  ///< steps bodies that fit a local store
-  /// Steps larger ones, in tiles. Of the same flavour as `match`, checked or not.
+  /// Steps larger bodies, in tiles. Checked if `match` is.
   const ls_sim::KernelImage& match_tiles;
-  /// Looks whether bodies yield or break. Null: the PPU does. Of the same flavour.
+  /// Checks whether bodies yield or break. Null: the PPU does it. Checked if `match` is.
   const ls_sim::KernelImage* strain = nullptr;
 };
 
-/// Steps soft bodies on SPEs. The result has the same bits for any number of SPEs. The rotations of regions live in
-/// main memory, not in the bodies: a body that is restored from a copy begins without rotations.
+/// Steps soft bodies on SPEs. The result has the same bits for any number of SPEs. The rotations of regions are in main memory, not in the
+/// bodies: a body that is restored from a copy begins without rotations.
 ///
-/// The rest shapes of plastic bodies flow on the PPU, in finish(). A body with a plasticity has a plan of its own in main memory, which
-/// its SPE fetches for this body alone. Whether a body yields or breaks SPEs look beside the step, in bodies of 128 to some 10,000
-/// particles; the PPU looks closely at those that may.
+/// The rest shapes of plastic bodies flow on the PPU, in finish(). A plastic body has its own plan in main memory, which its SPE fetches
+/// for this body alone. Beside the step, SPEs check whether bodies of 128 to some 10,000 particles yield or break; the PPU looks closely at
+/// those that may.
 ///
-/// One SPE steps a body that fits a local store, together with other bodies of its model. In three dimensions all SPEs
-/// together step a larger body, in tiles. The PPU steps what no SPE can step, while the SPEs step the other bodies: in
-/// two dimensions bodies that do not fit a local store; in three dimensions bodies that do not fit even in tiles, whose
-/// lattices are some hundreds of particles high (z) and have wide regions.
+/// One SPE steps a body that fits a local store, together with other bodies of its model. In three dimensions all SPEs together step a
+/// larger body, in tiles. The PPU steps bodies that no SPE can step, while the SPEs step the others: in two dimensions bodies that do not
+/// fit a local store; in three dimensions bodies that do not fit even in tiles, whose lattices are some hundreds of particles high (z) and
+/// have wide regions.
 /// @tparam kDimension  2 or 3
 template <int kDimension>
 class SpeSolver final : public SoftBodySolver<kDimension> {
@@ -71,16 +71,16 @@ class SpeSolver final : public SoftBodySolver<kDimension> {
                      std::span<const std::uint32_t> particle_of) override;
   bool may_break(const Body& body) const override;
 
-  /// How many bodies of the last kick(), awake or asleep, the PPU steps, because no SPE can. Checked kernels need a part
-  /// of the local store for their checks, so with them the number may be larger.
+  /// How many bodies of the last kick(), awake or asleep, the PPU steps, because no SPE can. Checked kernels need a part of the local store
+  /// for their checks, so the number may be larger with them.
   std::size_t bodies_on_ppu() const;
 
  private:
   struct Group;   // the bodies of one model
-  struct Member;  // where a body is
-  struct Known;   // the layout before
+  struct Member;  // the place of a body
+  struct Known;   // the layout before the present one
   struct Plans;   // of one model
-  struct Place;   // of one body, made ahead
+  struct Place;   // of one body, prepared ahead
 
   bool knows(std::span<Body* const> bodies) const;
   void regroup(std::span<Body* const> bodies);
@@ -97,8 +97,8 @@ class SpeSolver final : public SoftBodySolver<kDimension> {
   dma::AddressSpace& memory_;
   JobSystem& jobs_;
   JobImage match_, match_tiles_;    // the second in three dimensions only
-  std::optional<JobImage> strain_;  // none: the PPU looks whether bodies yield or break
-  bool checked_;                    // the kernels' flavour
+  std::optional<JobImage> strain_;  // none: the PPU checks whether bodies yield or break
+  bool checked_;                    // whether the kernels are checked
   std::vector<std::unique_ptr<Group>> groups_;
   std::vector<Member> members_;  // in the order of kick()
   std::vector<Body*> left_to_ppu_;
@@ -106,7 +106,7 @@ class SpeSolver final : public SoftBodySolver<kDimension> {
   std::vector<Place> prepared_;  // that no group has taken yet
   float step_ = 0;
   bool is_stepping_ = false;  // between kick() and finish() or drop()
-  JobChain chain_;            // last, so that it has ended before what its jobs work on goes
+  JobChain chain_;            // last member: the chain ends before its jobs' memory is freed
 };
 
 }  // namespace softcell::ppu

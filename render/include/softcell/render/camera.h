@@ -8,7 +8,7 @@ namespace softcell::render {
 /// A perspective camera; metres, y up.
 struct Camera {
   Eigen::Vector3f eye{0, 2, 6};
-  Eigen::Vector3f target{0, 0, 0};  ///< what the centre of the picture shows; not equal to `eye`
+  Eigen::Vector3f target{0, 0, 0};  ///< shown in the centre of the picture; not equal to `eye`
   Eigen::Vector3f up{0, 1, 0};      ///< not parallel to the line of sight
   float tan_half_fov_y = 0.4f;      ///< tangent of half the vertical angle of view; above 0
   float near_plane = 0.1f;          ///< above 0

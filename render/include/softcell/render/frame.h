@@ -1,6 +1,5 @@
 #pragma once
-// One frame as plain data: what to draw, from where, in which light. Metres, y up. Spans must live until
-// render() returns.
+// One frame as plain data: the objects to draw, the camera, and the light. Metres, y up. Spans must live until render() returns.
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -17,8 +16,8 @@ namespace softcell::render {
 /// A colour in linear light, each channel 0..1.
 using Colour = Eigen::Vector3f;
 
-/// The linear colour of 0xRRGGBB as painting programs write it. A cubic fit to the sRGB curve, within 0.003
-/// of it, so that no libm enters the picture.
+/// The linear colour of 0xRRGGBB as painting programs write it. A cubic fit to the sRGB curve, exact to 0.003, so that the picture does not
+/// depend on libm.
 inline Colour srgb(std::uint32_t rrggbb) {
   const auto channel = [rrggbb](int shift) {
     const float encoded = static_cast<float>((rrggbb >> shift) & 0xFFu) / 255.0f;
@@ -48,11 +47,11 @@ struct SkinnedDraw {
   Colour colour{0.8f, 0.8f, 0.8f};
   float opacity = 1;       ///< 0..1; below 1 the mesh is blended over what is behind it and casts no shadow
   bool two_sided = false;  ///< draw inner sides, too, for meshes with holes; takes about 1.6 times as long
-  /// Around the mesh as it is drawn, metres. None: all its triangles are drawn, however small.
+  /// Around the drawn mesh, metres. None: all its triangles are drawn, however small.
   std::optional<Eigen::AlignedBox3f> box = {};
   std::optional<TextureId> texture = {};  ///< its colours are multiplied with `colour`; none: `colour` alone
-  /// Parts with materials of their own, in place of `colour` and `texture`; triangles of no part are not drawn. None: the
-  /// whole mesh has one colour.
+  /// Parts with their own materials, instead of `colour` and `texture`; triangles in no part are not drawn. None: the whole mesh has one
+  /// colour.
   std::span<const PartDraw> parts = {};
 };
 
@@ -63,8 +62,8 @@ struct StaticDraw {
   Colour colour{0.8f, 0.8f, 0.8f};
   float opacity = 1;  ///< 0..1; below 1 front sides are blended over what is behind them
   Pattern pattern = Pattern::plain;
-  bool always_shadow = false;            ///< it casts a shadow with an opacity below 1, too
-  std::span<const PartDraw> parts = {};  ///< as SkinnedDraw has them, in place of `colour` and `pattern`
+  bool always_shadow = false;            ///< it casts a shadow also with an opacity below 1
+  std::span<const PartDraw> parts = {};  ///< as in SkinnedDraw, instead of `colour` and `pattern`
 };
 
 /// A particle lattice: spheres and the links between them.
@@ -75,9 +74,8 @@ struct LatticeDraw {
   Colour colour{0.9f, 0.5f, 0.1f};
 };
 
-/// The sun and the sky. Together they light a surface that faces the sun with about 1, so that it shows its
-/// own colour. Only what lies in the shadow sphere casts shadows and receives them: keep it around the scene,
-/// and fixed, or shadow edges flicker.
+/// The sun and the sky. Together they light a surface that faces the sun with about 1, so that it shows its own colour. Only objects in the
+/// shadow sphere cast and receive shadows: keep it around the scene, and fixed, or shadow edges flicker.
 struct Light {
   Eigen::Vector3f toward{-0.5f, 0.8f, 0.3f};  ///< direction from the scene to the light; any length but 0
   Colour colour{0.86f, 0.80f, 0.70f};
@@ -85,7 +83,7 @@ struct Light {
   Colour ground{0.17f, 0.15f, 0.13f};  ///< ambient light from below
   Eigen::Vector3f shadow_centre{0, 0, 0};
   float shadow_radius = 10;  ///< above 0
-  /// 0 or above: how much of the light surfaces within 6 % of the shadow radius keep off each other. 0: none.
+  /// 0 or above: how strongly surfaces within 6 % of the shadow radius keep light off each other. 0: not at all.
   float occlusion = 1;
 };
 
@@ -94,7 +92,7 @@ struct PixelRect {
   int left = 0, top = 0, right = 0, bottom = 0;
 };
 
-/// All that one picture shows. What the spans refer to must live until render() returns.
+/// Everything that one picture shows. Data that the spans refer to must live until render() returns.
 struct FrameDescription {
   Camera camera = {};
   Light light = {};

@@ -2,9 +2,8 @@
 // One frame in two dimensions as plain data: shapes, lines and dots on paper. Metres, y up. Spans must live until
 // render() returns.
 //
-// Everything lies in one plane, seen straight on. Shapes throw soft shadows on the paper and on nothing else. Lines
-// and dots have smooth edges whether or not the context has several samples a pixel; a shape gets one by a line along
-// its outline.
+// Everything lies in one plane, seen straight on. Shapes cast soft shadows on the paper only. Lines and dots have smooth edges whether or
+// not the context has several samples per pixel; to smooth the edge of a shape, draw a line along its outline.
 
 #include <Eigen/Core>
 #include <array>
@@ -31,24 +30,24 @@ static_assert(sizeof(Vertex2d) == 24, "uploaded as it is");
 
 enum class Fill2d : std::uint8_t {
   plain,
-  hatched,  ///< with slanting lines, as drawings show what stands firm
+  hatched,  ///< with slanting lines, as drawings show fixed objects
 };
 
 /// Triangles of one colour, lit from the upper left.
 struct Shape2d {
   Shape2dId shape = {};
-  std::span<const Vertex2d> vertices;  ///< shapes one behind the other that share them upload them once
+  std::span<const Vertex2d> vertices;  ///< successive shapes that share their vertices upload them once
   Colour colour{0.8f, 0.8f, 0.8f};
   float opacity = 1;
   Fill2d fill = Fill2d::plain;
   bool casts_shadow = true;
-  std::optional<TextureId> texture = {};  ///< in place of the colour; what its alpha leaves out is not there
+  std::optional<TextureId> texture = {};  ///< instead of the colour; its alpha cuts holes
 };
 
 /// A line through points, with round ends.
 struct Line2d {
   std::span<const Eigen::Vector2f> points;  ///< two at least
-  /// To which side each point's edge is pushed: of any length above 0. Empty: the line's own.
+  /// The direction in which each point's edge is pushed: of any length above 0. Empty: the line's own normals.
   std::span<const Eigen::Vector2f> normals = {};
   bool closed = false;
   float width = 0.01f;  ///< metres
@@ -73,27 +72,27 @@ struct Dots2d {
   float opacity = 1;
 };
 
-/// What the shapes lie on: squared paper.
+/// The paper that the shapes lie on: squared.
 struct Paper {
   Colour colour = srgb(0xF6F1E6);
   Colour line_colour = srgb(0x7FA3C4);
   float squares = 0.25f;  ///< side of a square, metres; every fourth line is stronger
 };
 
-/// Of the shapes' shadows, as shares of the height that the picture shows.
+/// The shapes' shadows; lengths are shares of the picture's height.
 struct Shadow2d {
   Eigen::Vector2f offset{0.010f, -0.015f};
   float blur = 0.022f;     ///< how far outwards and inwards an edge is spread
   float strength = 0.30f;  ///< 0..1: how much of the light is taken
 };
 
-/// All that one picture shows: the paper with the shadows, then lines, shapes, links, lines and dots, each in order.
+/// Everything that one picture shows: the paper with the shadows, then lines, shapes, links, lines and dots, each in order.
 struct Frame2d {
   Eigen::Vector2f centre{0, 0};  ///< of what the picture shows, metres
   float height = 10;             ///< of what the picture shows, metres
   Paper paper = {};
   Shadow2d shadow = {};
-  std::span<const Line2d> lines_below = {};  ///< what shapes cover of them is not seen
+  std::span<const Line2d> lines_below = {};  ///< shapes cover them
   std::span<const Shape2d> shapes = {};
   std::span<const Links2d> links = {};
   std::span<const Line2d> lines = {};

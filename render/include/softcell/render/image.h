@@ -24,8 +24,7 @@ struct Image {
   /// The same, to be changed.
   std::uint8_t* pixel(int x, int y) { return rgba.data() + offset(x, y); }
 
-  /// Whether `rgba` has the four bytes of each pixel and no more: every function that takes a picture needs
-  /// that.
+  /// Whether `rgba` has exactly four bytes for each pixel: every function that takes a picture needs that.
   bool is_whole() const {
     return width >= 0 && height >= 0 &&
            rgba.size() == 4 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height);

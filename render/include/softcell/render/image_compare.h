@@ -22,13 +22,11 @@ struct ImageDifference {
 /// Compares two pictures. Pictures of different sizes are not compared: see same_size. @pre both are whole
 ImageDifference compare(const Image& actual, const Image& expected);
 
-// The golden rule. One software rasterizer draws the same picture on every processor up to the last bit of
-// its float arithmetic: over the instruction sets it can be told to use on x86-64, at most 0.02 % of the
-// pixels differed, by 1 [measured, Mesa 22.3.6]. A lost anti-aliasing, a moved edge or a wrong shade differs
-// by more than 8 in hundreds of pixels. So a picture passes when no pixel differs by more than 2 (one bit,
-// and one more from the resolve of four samples), hence none by more than 8, and at most 0.2 % differ at all:
-// ten times what was seen. Perceptual measures are not used: those tried forgave a picture without
-// anti-aliasing.
+// The golden rule. One software rasterizer draws the same picture on every processor up to the last bit of its float arithmetic: with all
+// instruction sets that it can be told to use on x86-64, at most 0.02 % of the pixels differed, by 1 [measured, Mesa 22.3.6]. A lost
+// anti-aliasing, a moved edge or a wrong shade differs by more than 8 in hundreds of pixels. So a picture passes if no pixel differs by
+// more than 2 (one bit, and one more from the resolve of four samples), hence none by more than 8, and at most 0.2 % differ at all: ten
+// times the measured share. Perceptual measures are not used: those that we tried accepted a picture without anti-aliasing.
 inline constexpr int kGoldenMaxDifference = 2;
 inline constexpr double kGoldenMaxDifferingShare = 0.002;
 

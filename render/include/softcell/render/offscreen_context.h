@@ -1,6 +1,6 @@
 #pragma once
-// OpenGL without a window. Mesa is loaded at run time, never linked: its libraries export the same symbols as
-// libGL, and a program must also start on a machine that has neither.
+// OpenGL without a window. Mesa is loaded at run time, never linked: its libraries export the same symbols as libGL, and a program must
+// also start on a machine that has neither.
 
 #include <memory>
 
@@ -11,12 +11,11 @@ namespace softcell::render {
 enum class Backend {
   automatic,  ///< OSMesa, else EGL
   osmesa,     ///< libOSMesa: always in software; gone from Mesa 25.1 on
-  egl,  ///< libEGL on Mesa's surfaceless platform; in software when pin_software_rasterizer() was called
+  egl,        ///< libEGL on Mesa's surfaceless platform; in software after pin_software_rasterizer()
 };
 
 /// Makes a context and makes it current on the calling thread.
-/// @throws std::runtime_error  with the missing library and the package that contains it, or what Mesa
-/// refused.
+/// @throws std::runtime_error  names the missing library and the package that contains it, or what Mesa refused.
 std::unique_ptr<GlContext> create_offscreen_context(Backend backend = Backend::automatic);
 
 /// Makes pictures the same on every processor with AVX and FMA, which softcell's native engine needs anyway.

@@ -1,6 +1,6 @@
 #pragma once
-// Text, tables and plots over the picture, by Dear ImGui. We use its widgets and draw them ourselves, so that
-// they work in every context. Letters are DejaVu Sans where it is installed, else Dear ImGui's own.
+// Text, tables and plots over the picture, with Dear ImGui. We use its widgets and draw them ourselves, so that they work in every context.
+// The font is DejaVu Sans if it is installed, else Dear ImGui's own.
 
 #include "softcell/render/overlay_mesh.h"
 
@@ -16,7 +16,7 @@ namespace softcell::render {
 ///     renderer.draw_overlay(overlay.font(), overlay.end());
 class Overlay {
  public:
-  /// @param scale  size of the font, above 0; 1 is 14 pixels high, 13 in Dear ImGui's own letters.
+  /// @param scale  size of the font, above 0; 1 is 14 pixels high, or 13 with Dear ImGui's own font.
   explicit Overlay(float scale = 1);
   ~Overlay();
   Overlay(const Overlay&) = delete;
@@ -31,7 +31,7 @@ class Overlay {
   /// The mesh stays valid until the next begin().
   const OverlayMesh& end();
 
-  /// The texture for ImGui::Image() and the like that shows a part of the sheet of pictures; see Renderer::draw_overlay().
+  /// The texture to pass to ImGui::Image() and the like for a part of the sheet of pictures; see Renderer::draw_overlay().
   static void* sheet();
 
   /// Makes this Dear ImGui's current context, so that ImGui's input functions concern it.

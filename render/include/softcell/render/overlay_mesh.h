@@ -1,5 +1,5 @@
 #pragma once
-// What lies over a picture (text, tables, plots) as triangles: overlay.h makes them, the renderer draws them.
+// The overlay of a picture (text, tables, plots) as triangles: overlay.h makes them, the renderer draws them.
 
 #include <cstdint>
 #include <span>
@@ -7,7 +7,7 @@
 
 namespace softcell::render {
 
-/// What Dear ImGui hands over, in pixels from the upper left corner. [imgui.h, ImDrawVert] documented
+/// A vertex as Dear ImGui makes it, in pixels from the upper left corner. [imgui.h, ImDrawVert] documented
 struct OverlayVertex {
   float x, y;
   float u, v;
@@ -19,7 +19,7 @@ struct OverlayCommand {
   int left, top, right, bottom;  ///< pixels
   std::uint32_t first_index;
   std::uint32_t index_count;
-  bool of_sheet = false;  ///< its texels are those of the sheet of pictures, not of the font
+  bool of_sheet = false;  ///< it uses the sheet of pictures, not the font
 };
 
 /// One frame's overlay: triangles over the font's picture or a sheet of pictures, in order.

@@ -17,9 +17,9 @@ enum class PngEffort {
   small,  ///< for pictures that are kept, such as golden ones
 };
 
-/// A text in a PNG file, for programs that show what is known of a picture.
+/// A text in a PNG file, for programs that show information about a picture.
 struct PngText {
-  /// 1 to 79 letters, digits and single spaces; "Software", "Title" and others are the format's.
+  /// 1 to 79 letters, digits and single spaces; the format defines "Software", "Title" and others.
   std::string keyword;
   std::string text;  ///< UTF-8, one line
 };
@@ -35,16 +35,16 @@ void write_png(const std::filesystem::path& path, const Image& image, PngEffort 
 /// The texts of a PNG file, in order. Any thread. @throws std::runtime_error  as read_png()
 std::vector<PngText> read_png_texts(const std::filesystem::path& path);
 
-// What a picture of a stranger may be: no file fills the memory, however small it is.
+// Limits for pictures from strangers: no file may fill the memory, however small it is.
 inline constexpr int kMaxPictureSide = 4096;                                  // pixels
 inline constexpr std::uintmax_t kMaxPictureBytes = std::uintmax_t{64} << 20;  // of the file
 
 /// Reads a stranger's PNG file as RGBA8. Any thread.
-/// @throws std::runtime_error  one sentence with the file and the reason: there is none, it is a device or a pipe, too
-/// large, no PNG file, or damaged.
+/// @throws std::runtime_error  one sentence with the file and the reason: it does not exist, is a device or a pipe, is too large, is not a
+/// PNG file, or is damaged.
 Image read_picture(const std::filesystem::path& path);
 
-/// The same from a file's bytes. @param name  of the file, for the sentence
+/// The same from a file's bytes. @param name  of the file, for the message
 Image decode_picture(std::span<const std::byte> file, const std::string& name);
 
 /// Reads any PNG as RGBA8. Any thread.

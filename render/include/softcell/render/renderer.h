@@ -1,5 +1,5 @@
 #pragma once
-// Draws meshes into a picture. It works on vertex buffers and does not know physics.
+// Draws meshes into a picture. It works on vertex buffers and knows nothing about physics.
 
 #include <array>
 #include <cstddef>
@@ -33,23 +33,23 @@ static_assert(sizeof(CellVertex) == 56, "uploaded as it is");
 /// Bytes of one corner: four floats, x y z in metres and one that is ignored.
 inline constexpr std::size_t kCellCornerBytes = 16;
 
-/// How a Renderer is made. Every field has a default; width and height are in pixels.
+/// Options of a Renderer. Every field has a default; width and height are in pixels.
 struct RendererSettings {
   int width = 960;
   int height = 540;
-  int samples = 4;             ///< of multisampling, limited to what the context can do; 1 is none
-  int shadow_map_size = 1536;  ///< texels a side
+  int samples = 4;             ///< for multisampling, limited to what the context supports; 1: none
+  int shadow_map_size = 1536;  ///< texels per side
   int occlusion_pixels = 2;    ///< a side, for which ambient occlusion is computed together; 0: not at all
   bool soft_shadows = true;    ///< with wider edges; without a GPU a lit pixel takes twice the time
   /// Meshes that are small or far away are drawn with fewer triangles, whose vertices have moved by at most this many pixels, mostly along
-  /// the surface; in the shadow map by as many texels. 12 can hardly be seen. 0: all triangles are drawn.
+  /// the surface; in the shadow map by as many texels. 12 is hardly visible. 0: all triangles are drawn.
   float coarse_pixels = 0;
 };
 
-/// Draws with one sun that casts soft-edged shadows, light from sky and ground with ambient occlusion, tone mapping and
-/// sRGB encoding, with four samples a pixel. With one sample it smooths edges in the finished picture. It draws into its
-/// own framebuffer and has no global state. Use it on the context's thread; the context must outlive it. After the first
-/// frames, render() and pixels() allocate no memory themselves (the GL library may).
+/// Draws with one sun that casts soft-edged shadows, light from sky and ground with ambient occlusion, tone mapping and sRGB encoding, with
+/// four samples per pixel. With one sample it smooths edges in the finished picture. It draws into its own framebuffer and has no global
+/// state. Use it on the context's thread; the context must outlive it. After the first frames, render() and pixels() allocate no memory
+/// themselves (the GL library may).
 class Renderer {
  public:
   /// @throws std::runtime_error  the context has no OpenGL 3.3, or refuses the sizes.
@@ -58,12 +58,12 @@ class Renderer {
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;
 
-  /// Adds a mesh with changing vertices. Nothing is drawn of it before the first update_mesh().
-  /// @param indices  three vertices a triangle, counter-clockwise seen from outside.
+  /// Adds a mesh with changing vertices. It is not drawn before the first update_mesh().
+  /// @param indices  three vertices per triangle, counter-clockwise seen from outside.
   /// @throws std::invalid_argument  the number of indices is not a multiple of three.
   MeshId add_mesh(std::span<const std::uint32_t> indices);
 
-  /// Frees the memory of a mesh of add_mesh() or add_cell_mesh(). The next one that is added may get its handle.
+  /// Frees the memory of a mesh of add_mesh() or add_cell_mesh(). A mesh that is added later may get its handle.
   /// @throws std::invalid_argument  no such mesh.
   void remove_mesh(MeshId mesh);
 
@@ -73,36 +73,36 @@ class Renderer {
   /// mesh, or it is a mesh of cells.
   void update_mesh(MeshId mesh, std::span<const std::byte> vertices);
 
-  /// Adds a mesh whose vertices the GPU computes from the corners of cells. Nothing is drawn of it before the
-  /// first update_corners(). It is drawn like a mesh of add_mesh().
+  /// Adds a mesh whose vertices the GPU computes from the corners of cells. It is not drawn before the first update_corners(). It is drawn
+  /// like a mesh of add_mesh().
   /// @param indices  as for add_mesh(), into `vertices`
-  /// @throws std::invalid_argument  a count of indices that is no multiple of three, an index or a corner out
-  /// of range, or more corners than the GPU takes (OpenGL 3.3 promises 65,536).
+  /// @throws std::invalid_argument  the number of indices is not a multiple of three, an index or a corner is out of range, or there are
+  /// more corners than the GPU supports (OpenGL 3.3 promises 65,536).
   MeshId add_cell_mesh(std::span<const std::uint32_t> indices, std::span<const CellVertex> vertices,
                        std::size_t corner_count);
 
   /// Replaces the corners of a mesh of cells and computes its vertices. Vertices are rounded to half floats
   /// relative to `origin`: give the mesh's SkinnedDraw the same origin.
   /// @param corners  kCellCornerBytes each, in the host's byte order; copied.
-  /// @throws std::invalid_argument  the number of corners is another one, or there is no such mesh of cells.
+  /// @throws std::invalid_argument  the number of corners differs, or there is no such mesh of cells.
   void update_corners(MeshId mesh, std::span<const std::byte> corners, const Eigen::Vector3f& origin);
 
-  /// The texture coordinates of a mesh's vertices, in their order. They stay when the vertices are given anew.
+  /// Sets the texture coordinates of a mesh's vertices, in their order. They stay when the vertices are replaced.
   /// @param coordinates  at least one for each vertex that the indices name: (0, 0) is the picture's lower left corner,
   /// (1, 1) the upper right one.
   /// @throws std::invalid_argument  too few, or no such mesh.
   void set_texture_coordinates(MeshId mesh, std::span<const Eigen::Vector2f> coordinates);
-  /// The same of a mesh that does not change.
+  /// The same for a mesh that does not change.
   void set_texture_coordinates(StaticMeshId mesh, std::span<const Eigen::Vector2f> coordinates);
 
-  /// The colours of a mesh's vertices, in their order: red, green, blue in linear light, and alpha, each 0..1. They
-  /// stay when the vertices are given anew. @throws std::invalid_argument  too few, or no such mesh.
+  /// Sets the colours of a mesh's vertices, in their order: red, green, blue in linear light, and alpha, each 0..1. They stay when the
+  /// vertices are replaced. @throws std::invalid_argument  too few, or no such mesh.
   void set_vertex_colours(MeshId mesh, std::span<const Eigen::Vector4f> colours);
-  /// The same of a mesh that does not change.
+  /// The same for a mesh that does not change.
   void set_vertex_colours(StaticMeshId mesh, std::span<const Eigen::Vector4f> colours);
 
-  /// A picture to draw meshes with. The pixels are copied before it returns.
-  /// @throws std::invalid_argument  a picture without pixels, or larger than the context takes.
+  /// Adds a picture to draw meshes with. Copies the pixels before it returns.
+  /// @throws std::invalid_argument  a picture without pixels, or larger than the context supports.
   TextureId add_texture(const Image& picture, const TextureSettings& settings = {});
 
   /// Sets the rest shape of a mesh whose vertices change. RendererSettings::coarse_pixels needs it to leave out triangles.
@@ -119,17 +119,16 @@ class Renderer {
   StaticMeshId add_static_mesh(std::span<const Eigen::Vector3f> positions,
                                std::span<const Eigen::Vector3f> normals, std::span<const Triangle> triangles);
 
-  /// Draws one frame: first opaque meshes, then meshes with an opacity below 1 in the given order, static
-  /// ones last.
-  /// @pre  opacities are 0..1; poses have a determinant above 0; shadow radii are above 0, those of particles not below
+  /// Draws one frame: first opaque meshes, then meshes with an opacity below 1 in the given order, static ones last.
+  /// @pre  opacities are 0..1; poses have a determinant above 0; shadow radii are above 0, those of particles 0 or above
   /// @throws std::invalid_argument  a handle is not of this renderer, a link is out of range, a mesh with a
   /// texture has no texture coordinates, one with vertex colours has none, or a part is outside of its mesh.
   void render(const FrameDescription& frame);
 
-  /// Adds the triangles of a shape in two dimensions. Each frame gives their vertices.
-  /// @throws std::invalid_argument  more triangles than OpenGL counts.
+  /// Adds the triangles of a shape in two dimensions. Each frame provides their vertices.
+  /// @throws std::invalid_argument  more triangles than OpenGL can count.
   Shape2dId add_shape(std::span<const Triangle> triangles);
-  /// Frees the memory of a shape. The next one that is added may get its handle. @throws std::invalid_argument  no such shape.
+  /// Frees the memory of a shape. A shape that is added later may get its handle. @throws std::invalid_argument  no such shape.
   void remove_shape(Shape2dId shape);
 
   /// Draws one frame in two dimensions.
@@ -139,7 +138,7 @@ class Renderer {
   void render(const Frame2d& frame);
 
   /// Draws text and widgets over the last frame.
-  /// @param sheet  the picture that Overlay::sheet() stands for; it must live and stay as it is as long as the renderer. Null: none is
+  /// @param sheet  the picture that Overlay::sheet() stands for; it must stay unchanged as long as the renderer lives. Null: none is
   ///               shown.
   void draw_overlay(const OverlayFont& font, const OverlayMesh& mesh, const Image* sheet = nullptr);
 

@@ -11,35 +11,33 @@
 namespace softcell::render {
 
 enum class VideoFormat : std::uint8_t {
-  mp4,   ///< H.264 in yuv420p, which every player plays
+  mp4,   ///< H.264 in yuv420p, which every player supports
   webm,  ///< VP9 in yuv420p
-  gif,   ///< 256 colours a frame, each frame a whole number of hundredths of a second
+  gif,   ///< 256 colours per frame; each frame lasts a whole number of hundredths of a second
   apng,  ///< a moving PNG: every colour, large
 };
 
-/// The format by the file's ending, in small or capital letters; none: the ending is another one.
+/// The format for the file's extension, in small or capital letters; none: the extension is unknown.
 std::optional<VideoFormat> video_format(const std::filesystem::path& path);
 
-/// The endings of all formats, for sentences: ".mp4, .webm, .gif or .apng".
+/// The extensions of all formats, for messages: ".mp4, .webm, .gif or .apng".
 inline constexpr const char* kVideoEndings = ".mp4, .webm, .gif or .apng";
 
-/// The highest frame rate that players show as it is.
+/// The highest frame rate that players show correctly.
 int highest_frame_rate(VideoFormat format);
 
-/// Encodes frames as they are added, in the format that the file's ending names. With the same ffmpeg, the
-/// same frames give the same file. The file is an atomic one (see base/whole_file.h): it appears when
-/// finish() succeeds. In MP4 and WebM, odd sizes get one more black row or column.
+/// Encodes frames as they are added, in the format that the file's extension names. With the same ffmpeg, the same frames give the same
+/// file. The file is an atomic one (see base/whole_file.h): it appears when finish() succeeds. In MP4 and WebM, odd sizes get one more
+/// black row or column.
 ///
 ///     VideoWriter video("demo3d.mp4", 960, 540, 60);
 ///     while (...) video.add_frame(renderer.pixels());
 ///     video.finish();
 ///
-/// Use it from one thread. Ctrl-C on the terminal does not reach ffmpeg: the program itself decides what to
-/// keep.
+/// Use it from one thread. Ctrl-C on the terminal does not reach ffmpeg: the program itself decides what to keep.
 class VideoWriter {
  public:
-  /// @throws std::runtime_error  ffmpeg is not installed, the ending is of no format, or the size or rate is not
-  /// positive.
+  /// @throws std::runtime_error  ffmpeg is not installed, the extension is unknown, or the size or rate is not positive.
   VideoWriter(const std::filesystem::path& path, int width, int height, int frames_per_second);
   /// Without finish(): stops the child and removes the partial file.
   ~VideoWriter();

@@ -1,6 +1,5 @@
 #pragma once
-// A window on the user's screen, by SDL2. It uses OpenGL if the display has it; else pictures are drawn in
-// memory and copied.
+// A window on the user's screen, with SDL2. It uses OpenGL if the display supports it; otherwise pictures are drawn in memory and copied.
 //
 //   Window window({.title = "softcell demo 3d"});
 //   Renderer renderer(window.context(), {.width = window.width(), .height = window.height()});
@@ -19,15 +18,14 @@ namespace softcell::render {
 struct WindowSettings {
   std::string title = "softcell";
   int width = 1280, height = 720;  ///< in the desktop's units; on a dense screen a unit is several pixels
-  bool vertical_sync = true;       ///< show() waits for the screen, if the driver can
+  bool vertical_sync = true;       ///< show() waits for the screen, if the driver supports it
 };
 
 /// Create, poll and destroy it on the program's main thread, as SDL requires. After release(), one other
 /// thread may call context() and show(). One window at a time.
 class Window {
  public:
-  /// @throws std::runtime_error  there is no display (the message says how to do without one), or SDL
-  ///           refuses.
+  /// @throws std::runtime_error  there is no display (the message says how to work without one), or SDL refuses.
   explicit Window(const WindowSettings& settings);
   ~Window();
   Window(const Window&) = delete;
@@ -36,7 +34,7 @@ class Window {
   /// The window's context, which is current on the thread that made the window.
   GlContext& context();
 
-  /// Makes no context current on this thread, so that another thread can make the window's current.
+  /// Releases the window's context from this thread, so that another thread can make it current.
   void release();
 
   /// Size in pixels, now: the user may change it.
