@@ -183,7 +183,7 @@ bool is_under_way(const btCollisionObject& object) { return may_move(object) && 
 Vector3f velocity_in(float step, const btRigidBody& body) {
   const Vector3f velocity = to_eigen(body.getLinearVelocity());
   if (body.isStaticOrKinematicObject()) return velocity;
-  return velocity + step * body.getInvMass() * to_eigen(body.getTotalForce() * body.getLinearFactor());
+  return velocity + step * body.getInvMass() * to_eigen(body.getTotalForce());
 }
 
 /// As in Bullet's own solver, the factors multiply what impulses do along the world's axes, and about them.

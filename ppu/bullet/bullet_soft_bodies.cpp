@@ -53,6 +53,7 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
   ~Impl() override {
     workshop.reset();  // its threads use the members that follow
     solve.clear();
+    for (const auto& body : bodies) wake_rigid_bodies(*body);
     bodies.clear();
     world.removeAction(this);
     BulletHook::detach(world, *this);
@@ -196,7 +197,10 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
       bodies.back()->set_filter(body.filter());
       append(*bodies.back(), std::move(piece.particle_of));
     }
-    if (!made.vanished.empty()) tell_others(body);
+    if (!made.vanished.empty())
+      tell_others(body);
+    else
+      wake_rigid_bodies(body);
     SoftBody<3> before = body.become(std::move(prepared.front().piece.body));
     if (!with_attachments.empty()) {
       follow_sides(before, with_attachments);
@@ -269,11 +273,29 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
     if (!leaving.can_be_touched()) return;
     const Bounds<3> box = leaving.box();
     const std::optional<Bounds<3>> slept = leaving.box_asleep();
+    wake_rigid_bodies(leaving);
     for (const auto& body : bodies) {
       if (body.get() == &leaving) continue;
       body->lose(leaving, box);
       if (slept) body->lose(leaving, *slept);
     }
+  }
+
+  /// Wakes rigid bodies that may sleep on a soft one which leaves its place, or changes: Bullet does not know that they lie on it.
+  void wake_rigid_bodies(const CoupledBody& leaving) {
+    if (!leaving.can_be_touched()) return;
+    struct : btBroadphaseAabbCallback {
+      bool process(const btBroadphaseProxy* proxy) override {
+        static_cast<btCollisionObject*>(proxy->m_clientObject)->activate();
+        return true;
+      }
+    } wake;
+    const Eigen::Vector3f reach = Eigen::Vector3f::Constant(leaving.reach());
+    const auto wake_in = [&](const Bounds<3>& box) {
+      world.getBroadphase()->aabbTest(to_bullet(box.low - reach), to_bullet(box.high + reach), wake);
+    };
+    wake_in(leaving.box());
+    if (const std::optional<Bounds<3>> slept = leaving.box_asleep()) wake_in(*slept);
   }
 
   btDiscreteDynamicsWorld& world;

@@ -20,22 +20,18 @@ namespace softcell::ppu {
 /// One soft body and the rigid bodies of its outer particles, in the order of SoftBodyModel::outer().
 class SphereBody final : public CoupledBody {
  public:
-  SphereBody(btDiscreteDynamicsWorld& world, SoftBody<3> soft)
-      : CoupledBody(world, std::move(soft)),
-        shape_(soft_.model().contact_radius(), soft_.model().soft_contact_radius(),
-               BulletSoftBodies::kMaxTravelInCells * soft_.model().lattice().spacing) {
-    particles_.reserve(soft_.model().outer().size());
-    for (const std::uint32_t particle : soft_.model().outer()) add_particle(particle);
-    SC_ASSERT(particles_.size() == soft_.model().outer().size(), "{} rigid bodies for {} particles",
-              particles_.size(), soft_.model().outer().size());
+  SphereBody(btDiscreteDynamicsWorld& world, SoftBody<3> soft) : CoupledBody(world, std::move(soft)) {
+    add_particles();
   }
 
-  ~SphereBody() override {
-    for (btRigidBody& particle : particles_) world_.removeRigidBody(&particle);
-  }
+  ~SphereBody() override { remove_particles(); }
 
   void begin_substep() override {
     if (was_changed()) {
+      if (soft_.shared_model() != model_) {  // the program has assigned a body of another model
+        remove_particles();
+        add_particles();
+      }
       rouse();
       place_particles();
       for (btRigidBody& particle : particles_) {
@@ -112,6 +108,20 @@ class SphereBody final : public CoupledBody {
   }
 
  private:
+  void add_particles() {
+    model_ = soft_.shared_model();
+    shape_.emplace(model_->contact_radius(), model_->soft_contact_radius(),
+                   BulletSoftBodies::kMaxTravelInCells * model_->lattice().spacing);
+    particles_.reserve(model_->outer().size());
+    for (const std::uint32_t particle : model_->outer()) add_particle(particle);
+    SC_ASSERT(particles_.size() == model_->outer().size(), "{} rigid bodies for {} particles",
+              particles_.size(), model_->outer().size());
+  }
+  void remove_particles() {
+    for (btRigidBody& particle : particles_) world_.removeRigidBody(&particle);
+    particles_.clear();
+  }
+
   /// Whether Bullet has woken a particle, because something that moves touches it.
   bool was_touched() const {
     return std::any_of(particles_.begin(), particles_.end(), [](const btRigidBody& particle) {
@@ -136,7 +146,7 @@ class SphereBody final : public CoupledBody {
 
   void add_particle(std::uint32_t number) {
     // No inertia: spheres that turned would roll, and a body on rolling particles has no friction.
-    btRigidBody::btRigidBodyConstructionInfo info(soft_.model().masses()[number], nullptr, &shape_,
+    btRigidBody::btRigidBodyConstructionInfo info(soft_.model().masses()[number], nullptr, &*shape_,
                                                   btVector3(0, 0, 0));
     info.m_startWorldTransform.setOrigin(to_bullet(soft_.position(number)));
     info.m_friction = soft_.settings().friction;
@@ -153,7 +163,7 @@ class SphereBody final : public CoupledBody {
     particle.setActivationState(DISABLE_DEACTIVATION);
     particle.setUserPointer(&soft_);
     particle.setUserIndex(static_cast<int>(number));
-    world_.addRigidBody(&particle);
+    world_.addRigidBody(&particle, filter().group, filter().mask);
   }
 
   /// A btRigidBody takes 744 bytes, with position and velocity far apart: a loop over thousands of them would wait for memory twice for
@@ -190,7 +200,8 @@ class SphereBody final : public CoupledBody {
     }
   }
 
-  ContactSphere shape_;
+  std::shared_ptr<const SoftBodyModel<3>> model_;  // of the particles
+  std::optional<ContactSphere> shape_;
   std::vector<btRigidBody> particles_;  // must never reallocate: Bullet keeps their addresses
 };
 

@@ -154,6 +154,23 @@ TEST(BulletSoftBodies, CarryARigidBox) {
   EXPECT_LT(fastest(body), 0.03f);
 }
 
+/// Its spheres are those of the other model from then on.
+TEST(BulletSoftBodies, ABodyOfALargerOrSmallerModelCanBeAssigned) {
+  const auto small = block_model({2, 2, 2}, stiff(0.1f)), large = block_model({6, 4, 6}, stiff(0.1f));
+  for (const auto& [before, after] : {std::pair(small, large), std::pair(large, small)}) {
+    World world;
+    world.add_floor();
+    SoftBody<3>& body = world.soft.add(before, {0, 0.5f, 0});
+    for (int frame = 0; frame < 10; ++frame) world.bullet.step(kFrame, 2);
+    body = SoftBody<3>(after, {0, 0.5f, 0});
+    for (int frame = 0; frame < 180; ++frame) world.bullet.step(kFrame, 2);
+    EXPECT_GT(body.bounds().low.y(), 0);
+    EXPECT_LT(body.bounds().low.y(), 0.2f);
+    EXPECT_EQ(static_cast<std::size_t>(world.bullet.world().getNumCollisionObjects()),
+              after->outer().size() + 1);
+  }
+}
+
 TEST(BulletSoftBodies, SoftBodiesRestOnEachOther) {
   World world;
   world.add_floor();

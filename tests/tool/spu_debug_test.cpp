@@ -231,6 +231,23 @@ TEST(SpuDebug, HasAThreadForEachSpe) {
   EXPECT_NE(end.output.find("SPE 2 executed 27474 instructions"), std::string::npos) << end.output;
 }
 
+/// It waits for a mailbox that nobody fills. Its registers are there to be read; when it goes on from there it has ended.
+TEST(SpuDebug, StandsWhereItFailsBeforeItEnds) {
+  Debugged spu(debugged_file("mailboxes"));
+  std::string stop = spu.ask("c"), said;
+  for (; stop.starts_with("O"); stop = spu.reply()) said += stop;
+  EXPECT_EQ(stop, "T06thread:1;");
+  EXPECT_NE(said, "") << "a sentence says why";
+  const std::string place = spu.ask("p81"), registers = spu.ask("g");
+  EXPECT_NE(place, "00000000");
+  EXPECT_EQ(spu.ask("bs"), "T05thread:1;");
+  EXPECT_NE(spu.ask("p81"), place);
+  EXPECT_EQ(spu.ask("s"), "T05thread:1;");
+  EXPECT_EQ(spu.ask("p81"), place);
+  EXPECT_EQ(spu.ask("g"), registers);
+  EXPECT_EQ(spu.ask("c"), "X06");
+}
+
 TEST(SpuDebug, IsInterrupted) {
   // Without mail, it would wait for ever; with breakpoints nowhere, a loop runs until byte 3 comes.
   Debugged spu(debugged_file("selfcheck"));

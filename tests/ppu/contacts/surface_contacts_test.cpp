@@ -363,6 +363,41 @@ TEST(SurfaceContacts, ASleeperFallsWhenTheBodyBelowIsTakenAway) {
   }
 }
 
+TEST(SurfaceContacts, ARigidSleeperFallsWhateverHappensToTheSoftBodyBelow) {
+  const std::vector<std::function<void(std::unique_ptr<BulletSoftBodies>&, SoftBody<3>&)>> ways = {
+      [](auto& bodies, SoftBody<3>& lower) { bodies->remove(lower); },
+      [](auto& /*bodies*/, SoftBody<3>& lower) {
+        lower.translate({5, 0, 0});
+      },
+      [](auto& /*bodies*/, SoftBody<3>& lower) {
+        lower.reset({5, 1, 0});
+      },
+      [](auto& bodies, SoftBody<3>& lower) { bodies->set_filter(lower, {.group = 1, .mask = 2}); },
+      [](auto& bodies, SoftBody<3>& lower) {
+        for (SoftBody<3>* piece : bodies->cut(lower, Cut::plane({0.01f, 0.3f, 0}, {1, 0, 0})))
+          bodies->remove(*piece);
+        bodies->remove(lower);
+      },
+      [](auto& bodies, SoftBody<3>& /*lower*/) { bodies.reset(); },
+  };
+  for (std::size_t way = 0; way < ways.size(); ++way) {
+    SCOPED_TRACE(way);
+    ContactWorld w;
+    w.add_floor();
+    auto bodies = std::make_unique<BulletSoftBodies>(w.world);
+    bodies->let_sleep(SleepSettings{});
+    SoftBody<3>& lower =
+        bodies->add(make_soft_body_model(cube(0.6f, 0.2f), settings_of(0.2f, 0.8f, 0.4f)), {0, 0.3f, 0});
+    const btRigidBody& box =
+        w.add(std::make_unique<btBoxShape>(btVector3(0.2f, 0.2f, 0.2f)), 5, {0, 0.8f, 0});
+    w.run(600);
+    ASSERT_TRUE(lower.asleep() && !box.isActive());
+    ways[way](bodies, lower);
+    w.run(120);
+    EXPECT_LT(box.getWorldTransform().getOrigin().y(), 0.3f);
+  }
+}
+
 TEST(SurfaceContacts, ASleeperFallsWhateverTakesTheFloorAway) {
   btBoxShape small(btVector3(5, 0.1f, 5));
   const std::vector<std::pair<const char*, std::function<void(ContactWorld&, btRigidBody&)>>> ways = {

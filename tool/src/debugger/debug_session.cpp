@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <utility>
 
 #include "softcell/base/assert.h"
 
@@ -154,11 +155,23 @@ DebugStop DebugSession::run_to(const Goal& goal, const Interrupted& interrupted)
 }
 
 DebugStop DebugSession::go_on(const Interrupted& interrupted) {
-  return run_to({.kind = Goal::kStops}, interrupted);
+  return back_before_a_fault(run_to({.kind = Goal::kStops}, interrupted), interrupted);
 }
 DebugStop DebugSession::step(int spe, const Interrupted& interrupted) {
-  return run_to({.kind = Goal::kStepOf, .spe = spe}, interrupted);
+  return back_before_a_fault(run_to({.kind = Goal::kStepOf, .spe = spe}, interrupted), interrupted);
 }
+
+/// Once a run has ended, its registers and local stores are gone: of one that has failed somebody will want to see them.
+DebugStop DebugSession::back_before_a_fault(const DebugStop& stop, const Interrupted& interrupted) {
+  if (stop.kind != DebugStop::kEnded || std::exchange(shown_fault_, count_) == count_) return stop;
+  const auto failed =
+      std::ranges::find_if(result_->spes, [](const SpeRun& spe) { return spe.result.fault.has_value(); });
+  if (failed == result_->spes.end()) return stop;
+  const DebugStop back = run_again_to(count_, interrupted);
+  if (back.kind != DebugStop::kStep) return back;
+  return {.kind = DebugStop::kFault, .spe = static_cast<int>(failed - result_->spes.begin())};
+}
+
 DebugStop DebugSession::finish() {
   return run_to({.kind = Goal::kEnd}, [] { return false; });
 }

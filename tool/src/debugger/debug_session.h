@@ -29,9 +29,9 @@ struct Watchpoint {
 
 /// The reason why the SPEs stand still.
 struct DebugStop {
-  enum Kind : std::uint8_t { kStep, kBreakpoint, kWatchpoint, kInterrupted, kBeginning, kEnded };
+  enum Kind : std::uint8_t { kStep, kBreakpoint, kWatchpoint, kInterrupted, kBeginning, kFault, kEnded };
   Kind kind = kStep;
-  int spe = 0;                 ///< the SPE whose instruction is next
+  int spe = 0;                 ///< the SPE whose instruction is next; of kFault, the one that has failed
   Watchpoint watchpoint = {};  ///< of kWatchpoint
 };
 
@@ -53,6 +53,8 @@ class DebugSession final : private ls_sim::Debugger {
   DebugStop start();
 
   // @pre the last stop was not kEnded
+  // A program that fails ends twice: first it stands before the last instruction of the run again (kFault), and when it goes on from there it
+  // ends (kEnded).
   DebugStop go_on(const Interrupted& interrupted);
   /// Executes one instruction of this SPE; other SPEs may execute some meanwhile.
   DebugStop step(int spe, const Interrupted& interrupted);
@@ -81,8 +83,9 @@ class DebugSession final : private ls_sim::Debugger {
   /// The number of the next instruction; the first one has number 1.
   std::uint64_t instruction() const { return count_; }
 
-  /// After kEnded.
+  /// After kEnded or kFault.
   const KernelRun& result() const { return *result_; }
+  std::vector<std::string> failures() const { return result_->failures(image_); }
 
  private:
   struct Edit {
@@ -114,6 +117,7 @@ class DebugSession final : private ls_sim::Debugger {
 
   void begin(const Goal& goal);
   DebugStop run_to(const Goal& goal, const Interrupted& interrupted);
+  DebugStop back_before_a_fault(const DebugStop& stop, const Interrupted& interrupted);
   DebugStop run_again_to(std::uint64_t number, const Interrupted& interrupted);
   DebugStop wait(const Interrupted& interrupted);
   void abandon();
@@ -126,6 +130,7 @@ class DebugSession final : private ls_sim::Debugger {
   std::array<ls_sim::DebuggedSpe*, dma::kSpeCount> states_{};
   std::array<std::uint32_t, dma::kSpeCount> positions_{};
   std::uint64_t count_ = 0;
+  std::uint64_t shown_fault_ = 0;  ///< the last instruction of a run that has failed and was shown; 0: none
   Goal goal_;
   std::optional<Watchpoint> accessed_;  ///< by the previous instruction
   std::optional<DebugStop> best_;       ///< for kLastStopBefore

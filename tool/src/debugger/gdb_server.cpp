@@ -290,11 +290,16 @@ std::string GdbServer::resume(std::string_view action) {
     stop_ = session_.step_back(interrupted());
   }
   spe_ = stop_.spe;
+  if (stop_.kind == DebugStop::kFault)
+    for (const std::string& sentence : session_.failures()) say(sentence);
   return report(stop_);
 }
 
+/// In the debugger's own window.
+void GdbServer::say(const std::string& sentence) { connection_.send("O" + hexadecimal_of(sentence + "\n")); }
+
 std::string GdbServer::report(const DebugStop& stop) {
-  constexpr int kTrapSignal = 5, kInterruptSignal = 2;  // signals
+  constexpr int kTrapSignal = 5, kInterruptSignal = 2, kFaultSignal = 6;
   if (stop.kind == DebugStop::kEnded) {
     // The first SPE that has failed determines the answer.
     for (const SpeRun& spe : session_.result().spes) {
@@ -304,9 +309,10 @@ std::string GdbServer::report(const DebugStop& stop) {
     }
     return "W00";
   }
-  std::string text =
-      fmt::format("T{:02x}thread:{:x};",
-                  stop.kind == DebugStop::kInterrupted ? kInterruptSignal : kTrapSignal, stop.spe + 1);
+  const int signal = stop.kind == DebugStop::kInterrupted ? kInterruptSignal
+                     : stop.kind == DebugStop::kFault     ? kFaultSignal
+                                                          : kTrapSignal;
+  std::string text = fmt::format("T{:02x}thread:{:x};", signal, stop.spe + 1);
   if (stop.kind == DebugStop::kWatchpoint)
     text += fmt::format("{}:{:x};", name_of(stop.watchpoint.kind), stop.watchpoint.begin);
   if (stop.kind == DebugStop::kBeginning) text += "replaylog:begin;";

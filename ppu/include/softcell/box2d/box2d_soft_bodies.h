@@ -44,7 +44,7 @@ struct Contact2d {
   float impulse = 0;               ///< kg m/s along the normal, in the last step; above 0
   const SoftBody<2>* first = nullptr;
   const SoftBody<2>* second = nullptr;  ///< the other soft body; or null, and it is `rigid`
-  b2Body* rigid = nullptr;              ///< the rigid body; or null
+  b2Body* rigid = nullptr;  ///< the rigid body, which the program may have destroyed since; or null
 };
 
 /// A contact event, with the object of Box2D that takes part.
@@ -64,6 +64,9 @@ struct SoftRayHit2d {
 /// Box2D has no callback before a step, so step() replaces b2World::Step(). With ContactMethod::kSpheres each body uses a negative
 /// collision group, from -1 downwards: a fixture of the caller in that group never collides with the body. If a particle is NaN or
 /// infinite, begin_step() throws std::runtime_error.
+///
+/// Call nothing but const functions within a step of Box2D, as from a contact listener: as Box2D's own, the others need a world that is not
+/// locked. b2World::ShiftOrigin() does not move soft bodies: translate() each of them by the same way.
 class Box2dSoftBodies {
  public:
   /// With ContactMethod::kSpheres a particle moves at most this many cells in one step; faster particles are slowed down, which takes momentum from

@@ -68,7 +68,8 @@ struct SoftRayHit {
   SurfaceHit<3> hit;
 };
 
-/// The soft bodies of one world. Several objects of this class may share a world.
+/// The soft bodies of one world. Several objects of this class may share a world; soft bodies of different objects do not touch each other.
+/// Links of Bullet's multi-bodies (btMultiBody) pass through soft bodies.
 ///
 /// It installs an internal pre-tick callback and an overlap filter in the world, each of which calls the one that it
 /// replaces, and an action. The world's user info stays the caller's own. A callback or filter that the caller installs
