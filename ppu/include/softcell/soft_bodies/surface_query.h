@@ -58,8 +58,8 @@ class SurfaceQuery {
   /// `from`, the share is 0. The normal points from the surface to the sphere's centre. @param radius  metres, above 0
   std::optional<Hit> cast_sphere(const Vector& from, const Vector& to, float radius) const;
 
-  /// Metres from a point to the nearest place of what is drawn; below 0 inside the body. Where parts of the surface reach into each other, or
-  /// a body is crushed, inside is what the surface goes around as often as not in one direction; the nearest place may lie within.
+  /// Metres from a point to the nearest place of the surface; below 0 inside the body: where a line from the point leaves the body more or
+  /// less often than it enters it. Where parts reach into each other, or a body is crushed, the nearest place may lie within.
   float distance(const Vector& point) const;
 
   /// The box around the surface, metres.
