@@ -233,7 +233,7 @@ TEST(SpuDebug, HasAThreadForEachSpe) {
 
 /// It waits for a mailbox that nobody fills. Its registers are there to be read; when it goes on from there it has ended.
 TEST(SpuDebug, StandsWhereItFailsBeforeItEnds) {
-  Debugged spu(debugged_file("mailboxes"));
+  Debugged spu(debugged_file("mailbox_echo"));
   std::string stop = spu.ask("c"), said;
   for (; stop.starts_with("O"); stop = spu.reply()) said += stop;
   EXPECT_EQ(stop, "T06thread:1;");
