@@ -176,17 +176,23 @@ class Twin {
       const SolveVelocity& p = positions[cell.particle[k]];
       return V{p.x, p.y, p.z};
     };
-    const V first = position(0);
+    const auto velocity_by_root = [&](std::size_t k) {
+      const SolveVelocity& old = start[cell.particle[k]];
+      const V from{old.x, old.y, old.z};
+      return V::of([&](Axis d) { return from.*d + vector_of(changes[cell.particle[k]]).*d; });
+    };
+    const V first = position(0), first_now = velocity_by_root(0);
+    const float by_first_root = reciprocal(start[cell.particle[0]].root);
+    const V carried = V::of([&](Axis d) { return first_now.*d * by_first_root; });
     std::array<V, 8> arm;
     std::array<float, 8> root;
     std::array<V, 8> now;
     float mass = 0;
     V moment{0, 0, 0}, momentum{0, 0, 0};
     for (std::size_t k = 0; k < 8; ++k) {
-      const SolveVelocity& old = start[cell.particle[k]];
-      const V x = position(static_cast<int>(k)), from{old.x, old.y, old.z};
-      now[k] = V::of([&](Axis d) { return from.*d + vector_of(changes[cell.particle[k]]).*d; });
-      root[k] = old.root;
+      const V x = position(static_cast<int>(k)), by_root = velocity_by_root(k);
+      root[k] = start[cell.particle[k]].root;
+      now[k] = V::of([&](Axis d) { return madd(-root[k], carried.*d, by_root.*d); });
       const float m = root[k] * root[k];
       arm[k] = V::of([&](Axis d) { return (x.*d - first.*d) * inverse_spacing; });
       mass += m;
