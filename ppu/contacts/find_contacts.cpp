@@ -329,31 +329,44 @@ class ObstacleContacts {
   /// Finds out whether the whole body, with all that is inside of it, has been pressed through triangles: small bodies can be. Then the
   /// last place that it reached without passing through one tells on which side it belongs.
   void find_origin(const KnownTriangles& triangles) {
-    const Vector3f now =
+    const Vector3f middle =
         obstacle_.to_own(inner_place(*body_.model, middle_cell(*body_.model), body_.positions));
     KnownSides& sides = *body_.sides;
-    std::optional<Vector3f> last = sides.last_place(rigid_.number, obstacle_.part);
-    if (!last && sides.origin()) {
-      last = obstacle_.to_own(sides.origin()->near);
-      if (!is_clear_of(triangles, *last)) last = obstacle_.to_own(sides.origin()->middle);
+    const auto [last, last_middle] = track_of(triangles, middle);
+    Vector3f safe = last;
+    // If the body has been pressed through, its safe place follows it on the other side.
+    const Vector3f here =
+        is_crossed(triangles, last, middle) ? Vector3f(last + (middle - last_middle)) : middle;
+    for (const Vector3f& place : {moved_off(triangles, here), here}) {
+      if (is_crossed(triangles, last, place)) continue;
+      safe = place;
+      break;
     }
-    if (last && is_crossed(triangles, *last, now)) {
-      origin_ = last;
-      return sides.set_place(rigid_.number, obstacle_.part, *last);
-    }
-    sides.set_place(rigid_.number, obstacle_.part, !last || is_clear_of(triangles, now) ? now : *last);
+    if (is_crossed(triangles, safe, middle)) origin_ = safe;
+    sides.set_track(rigid_.number, obstacle_.part, {safe, middle});
   }
 
-  /// Whether no triangle is so near that it might be about to press through.
-  bool is_clear_of(const KnownTriangles& triangles, const Vector3f& place) const {
+  KnownSides::Track track_of(const KnownTriangles& triangles, const Vector3f& middle) const {
+    const auto known = body_.sides->track(rigid_.number, obstacle_.part);
+    const auto& origin = body_.sides->origin();
+    if (!origin) return known.value_or(KnownSides::Track{middle, middle});
+    // A piece that has just broken off. The whole may have been pressed through where it was.
+    const Vector3f near = obstacle_.to_own(*origin);
+    return {known && is_crossed(triangles, known->safe, near) ? known->safe : near, middle};
+  }
+
+  /// A place beside triangles, moved off them: the middle of a thin body lies so near to what it slides on that it might be pressed through
+  /// in the next substep.
+  Vector3f moved_off(const KnownTriangles& triangles, const Vector3f& place) const {
     const float margin = kPressedThrough * body_.spacing();
-    bool clear = true;
+    Vector3f moved = place;
     for_each_triangle(triangles, widened({place, place}, margin), [&](std::uint32_t number) {
       const ObstacleTriangle triangle(obstacle_, triangles, number);
-      clear = clear && !(triangle.has_area() && std::abs(triangle.height(place)) < margin &&
-                         triangle.is_over(place, margin));
+      if (!triangle.has_area() || !triangle.is_over(moved, margin)) return;
+      const float height = triangle.height(moved);
+      if (std::abs(height) < margin) moved += ((height < 0 ? -margin : margin) - height) * triangle.normal();
     });
-    return clear;
+    return moved;
   }
 
   /// Whether a triangle lies between two places.

@@ -10,7 +10,7 @@ void KnownSides::begin_substep() {
     for (auto& known : list) known.is_near = false;
   };
   keep_near(sides_);
-  keep_near(places_);
+  keep_near(tracks_);
   if (!is_new_) origin_.reset();
   is_new_ = false;
 }
@@ -34,21 +34,20 @@ float KnownSides::side_of(std::uint32_t rigid, std::uint32_t part, int seen) {
   return known->side < 0 ? -1.0f : 1.0f;
 }
 
-std::optional<Eigen::Vector3f> KnownSides::last_place(std::uint32_t rigid, std::uint32_t part) const {
-  const auto known = std::ranges::find_if(places_, of(rigid, part));
-  return known != places_.end() ? std::optional(known->place) : std::nullopt;
+auto KnownSides::track(std::uint32_t rigid, std::uint32_t part) const -> std::optional<Track> {
+  const auto known = std::ranges::find_if(tracks_, of(rigid, part));
+  return known != tracks_.end() ? std::optional(known->track) : std::nullopt;
 }
 
-void KnownSides::set_place(std::uint32_t rigid, std::uint32_t part, const Eigen::Vector3f& place) {
-  const auto known = std::ranges::find_if(places_, of(rigid, part));
-  if (known == places_.end())
-    places_.push_back({rigid, part, true, place});
+void KnownSides::set_track(std::uint32_t rigid, std::uint32_t part, const Track& track) {
+  const auto known = std::ranges::find_if(tracks_, of(rigid, part));
+  if (known == tracks_.end())
+    tracks_.push_back({rigid, part, true, track});
   else
-    known->is_near = true, known->place = place;
+    known->is_near = true, known->track = track;
 }
 
-void KnownSides::begin_piece(const Origin& origin) {
-  places_.clear();
+void KnownSides::begin_piece(const Eigen::Vector3f& origin) {
   origin_ = origin;
   is_new_ = true;
 }

@@ -22,19 +22,20 @@ class KnownSides {
   /// The last answer of side_of(), or 1.
   float last_side_of(std::uint32_t rigid, std::uint32_t part) const;
 
-  /// A place well inside of the body, in a rigid body's frame: the last one that it reached without passing through one of the triangles there.
-  std::optional<Eigen::Vector3f> last_place(std::uint32_t rigid, std::uint32_t part) const;
-  /// The place is last_place() from now on, in this substep and the next one.
-  void set_place(std::uint32_t rigid, std::uint32_t part, const Eigen::Vector3f& place);
-
-  /// Where a piece that has just broken off comes from, metres in the world.
-  struct Origin {
-    Eigen::Vector3f near;    ///< well inside of the whole, near the piece
-    Eigen::Vector3f middle;  ///< of the whole, for a piece from where the whole was pressed flat
+  /// How far a body has come without passing through a triangle, in the frame of these triangles, metres.
+  struct Track {
+    Eigen::Vector3f safe;    ///< the last place that it reached so
+    Eigen::Vector3f middle;  ///< where its middle was then, which may have been pressed through
   };
-  void begin_piece(const Origin& origin);
-  /// In the first substep of a piece.
-  const std::optional<Origin>& origin() const { return origin_; }
+  std::optional<Track> track(std::uint32_t rigid, std::uint32_t part) const;
+  /// Sets track(), for this substep and the next one.
+  void set_track(std::uint32_t rigid, std::uint32_t part, const Track& track);
+
+  /// The body is a piece that has just broken off. What the whole knew stays.
+  /// @param origin  well inside of the whole, near the piece, metres in the world
+  void begin_piece(const Eigen::Vector3f& origin);
+  /// Of a piece, in its first substep.
+  const std::optional<Eigen::Vector3f>& origin() const { return origin_; }
 
  private:
   static constexpr auto of(std::uint32_t rigid, std::uint32_t part) {
@@ -46,14 +47,14 @@ class KnownSides {
     int side;      // 0: not known
     int doubts;    // substeps one after the other in which it looked like the other side
   };
-  struct Place {
+  struct KnownTrack {
     std::uint32_t rigid, part;
     bool is_near;  // in this substep
-    Eigen::Vector3f place;
+    Track track;
   };
   std::vector<Side> sides_;
-  std::vector<Place> places_;
-  std::optional<Origin> origin_;
+  std::vector<KnownTrack> tracks_;
+  std::optional<Eigen::Vector3f> origin_;
   bool is_new_ = false;  // no substep has begun since begin_piece()
 };
 

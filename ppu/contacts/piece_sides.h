@@ -28,8 +28,7 @@ KnownSides sides_of_piece(const KnownSides& whole, const ContactModel& contact,
   SC_ASSERT(cell != lattice.corners.end(), "a piece of {} cells is no part of a body of {}",
             piece.cells.size(), lattice.cells.size());
   const auto number = static_cast<std::uint32_t>(cell - lattice.corners.begin());
-  sides.begin_piece({.near = inner_place(contact, number, positions),
-                     .middle = inner_place(contact, middle_cell(contact), positions)});
+  sides.begin_piece(inner_place(contact, number, positions));
   return sides;
 }
 

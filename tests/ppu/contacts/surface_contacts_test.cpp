@@ -114,6 +114,34 @@ TEST(SurfaceContacts, NothingPassesAWallOfTriangles) {
   }
 }
 
+/// The middle of a thin sheet is always near what it slides on: where it has been must not lag behind.
+TEST(SurfaceContacts, AThinSheetSlidesOverAHillOfTriangles) {
+  if (kSlowBuild) GTEST_SKIP() << "with sanitizers, which have the others";
+  const auto height = [](float x) { return x > 0 ? -0.3f * x * x : 0.0f; };
+  for (const bool upwards : {true, false}) {
+    btTriangleMesh hill;
+    for (int k = -40; k < 160; ++k) {
+      const float x = 0.05f * static_cast<float>(k), next = x + 0.05f;
+      const btVector3 a(x, height(x), -2), b(x, height(x), 2), c(next, height(next), 2),
+          d(next, height(next), -2);
+      hill.addTriangle(a, upwards ? b : c, upwards ? c : b);
+      hill.addTriangle(a, upwards ? c : d, upwards ? d : c);
+    }
+    for (const float thickness : {0.02f, 0.04f, 0.1f}) {
+      SCOPED_TRACE(testing::Message() << thickness << " m, upwards: " << upwards);
+      ContactWorld w;
+      w.add(std::make_unique<btBvhTriangleMeshShape>(&hill, true), 0, {0, 0, 0}, 0);
+      SoftBody<3>& sheet = w.add(make_box({0.3f, thickness, 0.3f}, 0.05f), settings_of(0.1f), {-1, 0.1f, 0});
+      w.run(20);
+      sheet.add_velocity({1, 0, 0});
+      w.run(150);
+      const Vector3f at = sheet.centre_of_mass();
+      EXPECT_GT(at.x(), 0.5f);
+      EXPECT_GT(at.y(), height(at.x()));
+    }
+  }
+}
+
 /// Two bodies that would change places in a substep hit each other, and part as slower ones do. Momentum is kept.
 TEST(SurfaceContacts, FastBodiesDoNotPassEachOther) {
   for (const float speed : {5.0f, 10.0f, 20.0f, 40.0f, 100.0f}) {
