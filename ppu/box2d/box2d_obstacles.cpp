@@ -56,7 +56,7 @@ float depth_behind(const b2PolygonShape& polygon, int face) {
   return -least;
 }
 
-/// FNV-1a.
+/// The hash FNV-1a, fed with words of 32 bits.
 class LookHash {
  public:
   void add(std::uint32_t number) { hash_ = (hash_ ^ number) * 0x100000001b3u; }
@@ -93,7 +93,7 @@ void add_shape(const b2Shape& shape, LookHash& hash) {
   }
 }
 
-/// As Box2dObstacles::look().
+/// Computes the hash that Box2dObstacles::look() returns.
 std::uint64_t look_of(const b2Body& body) {
   LookHash hash;
   hash.add(std::uint32_t{body.IsEnabled()});
@@ -196,7 +196,7 @@ void Box2dObstacles::number_bodies() {
     known_bodies_.emplace(*body, KnownBody{next_number_++});
 }
 
-/// Once in a step: a chain may be long.
+/// Computes the hash at most once in a step, as a chain may be long.
 std::uint64_t Box2dObstacles::look(const b2Body& body) {
   KnownBody& known = known_bodies_.at(&body);
   if (known.looked != steps_) {

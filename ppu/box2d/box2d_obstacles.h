@@ -48,8 +48,8 @@ class Box2dObstacles {
 
   /// A number that a body of the world keeps as long as it exists.
   std::uint32_t number(const b2Body& body) const { return known_bodies_.at(&body).number; }
-  /// Of a body of the world: another number when it was enabled or disabled, or a fixture was added, destroyed, made a sensor or solid, or
-  /// given another filter or shape. @pre begin() was called
+  /// A hash of what decides who touches a body of the world, and where. It changes when the body is enabled or disabled, and when a fixture
+  /// is added, destroyed, made a sensor or solid, or gets another filter or shape. @pre begin() was called
   std::uint64_t look(const b2Body& body);
   /// The number of fixtures that the body had before this one.
   static std::uint32_t number(const b2Fixture& fixture);
@@ -84,7 +84,7 @@ class Box2dObstacles {
   /// A body of the world.
   struct KnownBody {
     std::uint32_t number;
-    std::uint64_t looked = 0;  // at the step of this number; 0: never
+    std::uint64_t looked = 0;  // the number of the step that found `look`; 0: none has
     std::uint64_t look = 0;
   };
   class Collector;
@@ -111,7 +111,7 @@ class Box2dObstacles {
   std::vector<b2Fixture*> fixtures_;  // for each obstacle
   std::vector<ContactRigid> rigids_, before_;
   std::vector<b2Body*> bodies_;
-  std::unordered_map<const b2Body*, KnownBody> known_bodies_;  // all that the world has
+  std::unordered_map<const b2Body*, KnownBody> known_bodies_;  // all bodies of the world
   std::uint64_t steps_ = 0;
   std::uint32_t next_number_ = 0;
   std::vector<b2Body*> unknown_;

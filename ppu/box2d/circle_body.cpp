@@ -81,7 +81,7 @@ bool CircleBody::was_disturbed() const {
          has_lost_support();
 }
 
-/// Particles of other bodies wake those that they touch; only they may not fall asleep.
+/// Leaves out dynamic bodies that may not fall asleep: they are particles of other bodies, and wake the particles that they touch.
 void CircleBody::remember_supports() {
   supports_.clear();
   for (const b2Body* const particle : particles_) {
@@ -95,8 +95,8 @@ void CircleBody::remember_supports() {
   }
 }
 
-/// Of what Box2D tells nobody, as it looks at no contact between two bodies that sleep: the program has moved what a particle lies on, or
-/// made it a sensor. Bodies that contacts know are there.
+/// Whether the program has moved a body that a particle lies on, or made it a sensor. Box2D wakes no particle then, because it does not
+/// look at contacts between two sleeping bodies. A body in a particle's list of contacts still exists.
 bool CircleBody::has_lost_support() const {
   for (const b2Body* const particle : particles_) {
     for (const b2ContactEdge* edge = particle->GetContactList(); edge != nullptr; edge = edge->next) {

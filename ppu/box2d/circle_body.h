@@ -51,7 +51,7 @@ class CircleBody final : public Box2dBody {
 
   std::int16_t group_;
   std::vector<b2Body*> particles_;
-  std::vector<Support> supports_;   // while it sleeps
+  std::vector<Support> supports_;   // filled while the body sleeps
   std::vector<b2Body*> of_number_;  // by the particle's number in the body; null: an inner particle
 };
 

@@ -95,7 +95,7 @@ void SurfaceContacts2d::begin(Bodies bodies, const Box2dAttachments& attachments
     const SoftBody<2>& soft = body.soft();
     Kept& kept = kept_[&body];
     if (kept.model == nullptr) kept.number = next_number_++;
-    if (soft.position(0) != kept.place_of_sides) kept.sides = {};  // the program has moved it
+    if (soft.position(0) != kept.place_of_sides) kept.sides = {};  // the program has moved the body
     kept.model = &model_of(soft.shared_model());
     lift(body, kept, step);
     softs_.push_back(&soft);
@@ -120,12 +120,12 @@ void SurfaceContacts2d::begin(Bodies bodies, const Box2dAttachments& attachments
   }
 }
 
-/// The world does not have it, or it is another one to those that touch it. Box2D tells only those that it knows.
+/// Whether the world no longer has the body, or the body has changed for those that touch it. Box2D does not tell soft bodies of it.
 bool SurfaceContacts2d::is_gone(const Support& support) {
   return !obstacles_.has(support.body) || obstacles_.look(*support.body) != support.look;
 }
 
-/// Near a sleeper: how it is when it is seen first.
+/// Remembers a body near a sleeper as it is when the sleeper first sees it.
 void SurfaceContacts2d::see(Kept& kept, b2Body& body) {
   if (std::ranges::find(kept.seen, &body, &Support::body) == kept.seen.end())
     kept.seen.push_back(as_it_is(body));
@@ -133,7 +133,7 @@ void SurfaceContacts2d::see(Kept& kept, b2Body& body) {
 
 /// Whether a body beside the sleeping one has begun to move, or one that it lies on is gone.
 bool SurfaceContacts2d::must_wake(Kept& kept, const SoftBody<2>& sleeper, const BodyInStage& in_stage) {
-  constexpr float kCreep = 0.02f;  // cells: more than contacts let something be in the sleeper
+  constexpr float kCreep = 0.02f;  // cells: more than the depth that contacts allow
   const float far = kCreep * sleeper.model().lattice().spacing;
   const Eigen::Vector2f centre = sleeper.centre_of_mass();
   const auto is_gone_or_moved = [&](const Support& support) {
@@ -335,7 +335,7 @@ void SurfaceContacts2d::follow_pieces(const Box2dBody& body, const SoftBodyModel
   const auto there = kept_.find(&body);
   const Kept before = there != kept_.end() ? there->second : Kept();
   forget(body);
-  if (before.model == nullptr || before.model->model.get() != &whole) return;  // the whole has never touched
+  if (before.model == nullptr || before.model->model.get() != &whole) return;  // no step has had the whole
   for (const Piece& piece : pieces) {
     Kept& kept = kept_[piece.body];
     const SoftBody<2>& soft = piece.body->soft();

@@ -75,20 +75,20 @@ class SurfaceContacts2d {
   void let_lie(const Box2dBody& body);
   /// Wakes the bodies that lie on a body which is being removed.
   void forget(const Box2dBody& body);
-  /// A body goes, or may go, from where it is, or no longer touches what it did: likewise.
+  /// Wakes the bodies that lie on a body which moves away, may do so, or no longer touches what it did.
   void tell_those_on(const Box2dBody& body);
-  /// A piece, and of each of its particles which one of the whole it was.
+  /// A piece, and for each of its particles the particle of the whole that it was.
   struct Piece {
     const Box2dBody* body;
     std::span<const std::uint32_t> particle_of;
   };
-  /// A body has become the first of these pieces. @param whole  the model that it had
+  /// Gives pieces the sides of the body that broke into them, which has become the first of them. @param whole  the model that it had
   void follow_pieces(const Box2dBody& body, const SoftBodyModel<2>& whole, std::span<const Piece> pieces);
   /// Frees what is kept of pieces if none of these bodies has their model any longer. @pre between steps
   void forget_pieces(Bodies bodies);
 
  private:
-  /// A rigid body as it was when a soft one that lies on it, or near it, fell asleep.
+  /// A rigid body as it was when a soft one fell asleep on it, or when a sleeper near it first saw it.
   struct Support {
     b2Body* body;
     b2Transform pose;
@@ -99,7 +99,7 @@ class SurfaceContacts2d {
     std::uint32_t number = 0;      // in the order in which bodies were added
     const Model* model = nullptr;  // null: the body is new
     KnownSides sides;
-    Eigen::Vector2f place_of_sides{0, 0};                // of the first particle, since they are known
+    Eigen::Vector2f place_of_sides{0, 0};                // of the first particle, when `sides` last applied
     std::vector<Eigen::Vector3f> positions, velocities;  // of its layer, at the step's beginning
     std::vector<Support> supports;                       // while it sleeps
     std::vector<const Box2dBody*> lies_on;               // likewise

@@ -189,7 +189,7 @@ Vector3f velocity_in(float step, const btRigidBody& body) {
 /// As in Bullet's own solver, the factors multiply what impulses do along the world's axes, and about them.
 void set_mobility(const btRigidBody& body, ContactRigid& rigid) {
   const Vector3f linear = to_eigen(body.getLinearFactor()), angular = to_eigen(body.getAngularFactor());
-  if (linear.isZero(0) && angular.isZero(0)) return;  // nothing moves it
+  if (linear.isZero(0) && angular.isZero(0)) return;  // no impulse moves it
   rigid.inverse_mass = body.getInvMass();
   rigid.inverse_inertia =
       angular.asDiagonal() * to_eigen(body.getInvInertiaTensorWorld()) * angular.asDiagonal();
@@ -260,7 +260,7 @@ void BulletObstacles::begin(const btDiscreteDynamicsWorld& world, float step) {
   edges_used_ = triangles_used_ = 0;
   leaving_.clear();
   const btCollisionObjectArray& objects = world.getCollisionObjectArray();
-  // Trigger volumes are moved by the program, most without a velocity.
+  // The program moves trigger volumes, most of them without a velocity.
   const bool wants_triggers = role_ == Objects::kTriggers;
   for (int i = 0; i < objects.size(); ++i)
     if (is_under_way(*objects[i]) || (wants_triggers && !objects[i]->hasContactResponse()))

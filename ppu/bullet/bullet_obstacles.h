@@ -64,7 +64,7 @@ class BulletObstacles {
 
   void find_leaving(const btCollisionObject& object);
   void add_object(btCollisionObject& object, const Bounds<3>& box, std::vector<std::uint32_t>& indices);
-  /// @param part  of the shape: different from that of every other shape within the rigid body's
+  /// @param part  the number of the shape, which no other shape of the rigid body has
   void add_shape(const btCollisionShape& shape, const btTransform& pose, std::uint32_t rigid,
                  std::uint32_t part, const Bounds<3>& box, std::vector<std::uint32_t>& indices);
   void add_triangles(const btCollisionShape& shape, Obstacle obstacle, const Bounds<3>& box,

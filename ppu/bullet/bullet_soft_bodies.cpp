@@ -281,7 +281,7 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
     }
   }
 
-  /// Wakes rigid bodies that may sleep on a soft one which leaves its place, or changes: Bullet does not know that they lie on it.
+  /// Wakes rigid bodies that may sleep on a soft body which leaves its place or changes: Bullet does not know that they lie on it.
   void wake_rigid_bodies(const CoupledBody& leaving) {
     if (!leaving.can_be_touched()) return;
     struct : btBroadphaseAabbCallback {

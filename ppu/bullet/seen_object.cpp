@@ -18,7 +18,7 @@ SeenObject::SeenObject(const btDiscreteDynamicsWorld& world, int place) : place_
 
 bool SeenObject::has_changed(const btDiscreteDynamicsWorld& world, const Eigen::Vector3f& point, float far) {
   const btCollisionObjectArray& objects = world.getCollisionObjectArray();
-  // Bullet puts the last one where one was removed.
+  // Bullet moves the last object of its list to the place of a removed one.
   if (place_ >= objects.size() || objects[place_] != object_) place_ = place_of(world, object_);
   if (place_ < 0 || look_at(*object_) != look_) return true;
   const btVector3 here = to_bullet(point), there = object_->getWorldTransform() * pose_.invXform(here);
@@ -43,7 +43,7 @@ SeenObject::Look SeenObject::look_at(const btCollisionObject& object) {
   look.box = {low.x(), low.y(), low.z(), high.x(), high.y(), high.z()};
   if (look.kind == COMPOUND_SHAPE_PROXYTYPE)
     look.revision = static_cast<const btCompoundShape&>(shape).getUpdateRevision();
-  if (look.kind == STATIC_PLANE_PROXYTYPE) {  // its box is endless
+  if (look.kind == STATIC_PLANE_PROXYTYPE) {  // its box is infinite
     const auto& plane = static_cast<const btStaticPlaneShape&>(shape);
     const btVector3& normal = plane.getPlaneNormal();
     look.plane = {normal.x(), normal.y(), normal.z(), plane.getPlaneConstant()};

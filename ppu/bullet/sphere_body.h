@@ -200,7 +200,7 @@ class SphereBody final : public CoupledBody {
     }
   }
 
-  std::shared_ptr<const SoftBodyModel<3>> model_;  // of the particles
+  std::shared_ptr<const SoftBodyModel<3>> model_;  // whose particles these are
   std::optional<ContactSphere> shape_;
   std::vector<btRigidBody> particles_;  // must never reallocate: Bullet keeps their addresses
 };

@@ -34,7 +34,7 @@ class SurfaceBody final : public CoupledBody {
   }
 
   void begin_substep() override {
-    if (soft_.position(0) != place_of_sides_) set_sides({});  // the program has moved it
+    if (soft_.position(0) != place_of_sides_) set_sides({});  // the program has moved the body
     if (!was_changed()) return;
     rouse();
     see_changes();
@@ -72,7 +72,7 @@ class SurfaceBody final : public CoupledBody {
   }
   void fall_asleep_with_others() { fall_asleep_now(); }
 
-  /// On which sides of meshes it is.
+  /// The sides of rigid triangles on which the body is.
   KnownSides& sides() { return sides_; }
   const KnownSides& sides() const { return sides_; }
   void set_sides(const KnownSides& sides) {
@@ -96,14 +96,14 @@ class SurfaceBody final : public CoupledBody {
   Bounds<3> box() const override { return soft_.bounds(); }
   std::optional<Bounds<3>> box_asleep() const override { return box_asleep_; }
 
-  /// It sleeps: remembers an object near it as it is, unless it knows it. @param place  in the world's list of objects
+  /// Has a sleeper remember an object near it as it is now, unless it knows it. @param place  its index in the world's list of objects
   void see(int place) {
     const btCollisionObject& object = *world_.getCollisionObjectArray()[place];
     const auto is_known = [&](const SeenObject& seen) { return seen.is(object); };
     if (std::ranges::none_of(seen_, is_known)) seen_.emplace_back(world_, place);
   }
-  /// Whether something that it has seen since it fell asleep is gone, has changed or is elsewhere, however slowly it went, by more than
-  /// contacts let it be in the body.
+  /// Whether an object that the body has seen since it fell asleep is gone, has changed, or has moved, however slowly, by more than the
+  /// depth that contacts allow.
   bool notices_a_change() {
     if (!box_asleep_) box_asleep_ = soft_.bounds();  // for a sleeping body that was assigned to this one
     const Eigen::Vector3f middle = 0.5f * (box_asleep_->low + box_asleep_->high);
@@ -119,9 +119,9 @@ class SurfaceBody final : public CoupledBody {
   void fall_asleep() override { box_asleep_ = soft_.bounds(); }
 
   KnownSides sides_;
-  Eigen::Vector3f place_of_sides_{0, 0, 0};  // of the first particle, since they are known
+  Eigen::Vector3f place_of_sides_{0, 0, 0};  // where the first particle was when sides_ last applied
   std::optional<Bounds<3>> box_asleep_;
-  std::vector<SeenObject> seen_;  // since it fell asleep
+  std::vector<SeenObject> seen_;  // objects near the body since it fell asleep
   const ContactModel* contact_;
   std::uint32_t number_;
   bool holds_a_moving_body_ = false, is_still_ = false;

@@ -59,7 +59,7 @@ bool SurfaceContacts::any_near(const BodyInStage& body, const Is& is) const {
   });
 }
 
-/// What moves comes near the sleeper, or what is near it is no longer what it was.
+/// Whether something that moves has come near the sleeper, or something that it has seen is gone, has moved or has changed.
 bool SurfaceContacts::is_disturbed(SurfaceBody& sleeper, const BodyInStage& in_stage) const {
   const auto moves_or_is_seen = [&](const btCollisionObject& object) {
     sleeper.see(object.getWorldArrayIndex());
@@ -68,7 +68,7 @@ bool SurfaceContacts::is_disturbed(SurfaceBody& sleeper, const BodyInStage& in_s
   return any_near(in_stage, moves_or_is_seen) || sleeper.notices_a_change();
 }
 
-/// It has just fallen asleep. The program's callbacks may have removed some of what was near in this substep.
+/// For a body that has just fallen asleep. The program's callbacks may have removed some of these objects in this substep.
 void SurfaceContacts::see_what_is_near(SurfaceBody& sleeper, const BodyInStage& in_stage) const {
   for (const std::uint32_t obstacle : in_stage.obstacles) {
     const btCollisionObject* const object = obstacles_.objects()[obstacles_.obstacles()[obstacle].rigid];
@@ -189,7 +189,7 @@ void SurfaceContacts::let_sleep(std::span<SurfaceBody* const> bodies, const Slee
     if (body->island() && !body->soft().asleep() && !body->is_attached() && !is_restless_[*body->island()])
       body->fall_asleep_with_others();
   attachments_.let_sleep(sleep);
-  // Before the program can change anything. Bodies that have come in this substep are behind the others, and awake.
+  // New sleepers see what is near before the program can change it. Bodies that were added in this substep come last and are awake.
   for (std::size_t i = 0; i < std::min(bodies.size(), in_stage_.size()); ++i)
     if (bodies[i]->soft().asleep() && !in_stage_[i].asleep) see_what_is_near(*bodies[i], in_stage_[i]);
 }

@@ -33,7 +33,7 @@ struct AttachedRigid<3> {
     return rigid.held ? rigid.held->linear
                       : Eigen::Matrix3f(rigid.inverse_mass * Eigen::Matrix3f::Identity());
   }
-  /// Whether it moves along all axes alike.
+  /// Whether an impulse moves it alike along all axes.
   static bool is_free(const Rigid& rigid) { return !rigid.held; }
   /// m/s^2: centripetal acceleration of a point that turns with the body.
   static Vector curve(const Rigid& rigid, const Vector& point) {

@@ -82,7 +82,7 @@ std::vector<Eigen::Vector<float, kDimension>> simplex() {
   }
 }
 
-/// The patches of an attachment, as one body.
+/// The patches of an attachment, which turn as one rigid body.
 template <int kDimension>
 class TurnedPatches {
  public:
@@ -98,7 +98,7 @@ class TurnedPatches {
     }
     patches_[count_++] = {&body, particles};
   }
-  /// Gives them a spin, and no momentum. Particles on a line do not turn in three dimensions.
+  /// Adds an angular momentum and no momentum. In three dimensions particles on one line do not turn.
   void turn(const turning::Axial<kDimension>& spin) const {
     const Vector middle = sum_ / mass_;
     const auto inertia = turning::inertia_of((squares_ - mass_ * middle * middle.transpose()).eval());
@@ -664,7 +664,7 @@ std::span<const std::uint32_t> AttachmentRows<kDimension>::patch_of(const Side& 
   return of_first_row.count == 1 ? all : all.subspan(of_first_row.first, of_first_row.count);
 }
 
-/// A rope's impulse leads from end to end. What does not move takes spin as it takes momentum.
+/// A rope's impulse lies on the line between its ends, so it adds none. A side that does not move takes spin as it takes momentum.
 template <int kDimension>
 void AttachmentRows<kDimension>::take_back_spin() {
   const bool with_rigid = sides_.b == nullptr && sides_.rigid != nullptr && sides_.rigid->inverse_mass > 0;

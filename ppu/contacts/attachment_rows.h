@@ -121,10 +121,10 @@ class AttachmentRows {
   bool is_direct() const { return is_direct_; }
   /// One iteration. @return  the largest velocity error of a row, squared (m/s)^2
   float iterate();
-  /// Behind the last one.
+  /// Ends the substep after the last iteration.
   void finish();
-  /// Part of finish(); the last part where a kernel has solved the rows. What gives way is stretched: its impulses lead past each other where
-  /// its ends also move across. The patches get the turn that takes this back, of what is attached to a rigid body the soft one alone.
+  /// Takes back the angular momentum that a compliant attachment has added: its ends are apart, so its two impulses do not lie on one line
+  /// if the ends also move sideways. It turns the patches of soft bodies, no rigid body. finish() calls it; after a kernel, call it last.
   void take_back_spin();
   bool gives_way() const { return softness_ > 0; }
 
@@ -207,7 +207,7 @@ class AttachmentRows {
   void keep_below_break_force();
   void limit_pushes(const Side& side, const AttachedBody<kDimension>& body) const;
   Vector carried_impulse() const;
-  /// Those of a patch, each once.
+  /// The particles of a patch, each once.
   static std::span<const std::uint32_t> patch_of(const Side& side, const Place& of_first_row);
 
   AttachmentSettings<kDimension> settings_;

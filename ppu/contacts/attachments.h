@@ -59,7 +59,7 @@ class AttachmentSolver {
   /// Reads back the kernel's results. Call it instead of finish().
   virtual void read(std::size_t attachment, const spu::AttachLink& link,
                     std::span<const spu::AttachPoint> points, std::span<const spu::AttachRow> rows) = 0;
-  /// Behind read() of all, when velocities are as the kernel has left them.
+  /// Call it after read() of all attachments, while bodies have the velocities that the kernel gave them.
   virtual void take_back_spin() = 0;
 };
 
@@ -90,7 +90,7 @@ class Attachments final : public AttachmentSolver<kDimension> {
     AttachmentRecords<kDimension>(*solved_[attachment].rows).read(link, points, rows);
   }
   void take_back_spin() override;
-  /// Whether one of them is compliant.
+  /// Whether one of the attachments is compliant.
   bool gives_way() const;
 
  private:

@@ -111,7 +111,7 @@ class ContactModel {
   std::size_t own_count_ = 0;             // number of the body's own cells, which come first
 };
 
-/// A place well inside of a body near one of its cells, metres. @param positions  of its particles
+/// A place well inside a body, near one of its cells, in metres. @param positions  of the body's particles
 Eigen::Vector3f inner_place(const ContactModel& model, std::uint32_t cell,
                             std::span<const Eigen::Vector3f> positions);
 /// The cell that stands for the middle of a body.

@@ -21,7 +21,7 @@ inline constexpr float kLeastVolume = 0.5f;  ///< of the volume at rest: cells b
 /// As a share of the volume at rest, at the substep's beginning; below 0 inside out.
 float volume_of_cell(const ContactBody& body, std::uint32_t cell);
 
-/// Of a body that is in no substep.
+/// Counts the crushed cells of a body between substeps.
 /// @param positions  of the lattice's particles
 CrushedCellCount count_crushed_cells(const Lattice<3>& lattice, std::span<const Eigen::Vector3f> positions);
 
@@ -34,7 +34,7 @@ class CrushedCells {
   /// @return      whether velocities have changed
   bool hold(ContactBody& body, float step);
 
-  /// Of the last hold(): cells that are crushed at the substep's beginning and would be at its end.
+  /// The number of cells that were crushed at the beginning of the substep of the last hold(), and would have been at its end.
   std::uint32_t count() const { return count_; }
   /// How many of them are inside out.
   std::uint32_t inside_out() const { return inside_out_; }

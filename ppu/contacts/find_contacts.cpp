@@ -369,7 +369,7 @@ class ObstacleContacts {
     return moved;
   }
 
-  /// Whether a triangle lies between two places.
+  /// Whether the way from one place to another crosses a triangle.
   bool is_crossed(const KnownTriangles& triangles, const Vector3f& from, const Vector3f& to) const {
     bool crossed = false;
     for_each_triangle(triangles, {from.cwiseMin(to), from.cwiseMax(to)}, [&](std::uint32_t number) {

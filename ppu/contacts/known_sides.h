@@ -1,5 +1,5 @@
 #pragma once
-// On which side of rigid triangles a body is, and where it was last on that side: it stays there while it is near them.
+// The side of rigid triangles on which a body is, and the last place where it was on that side. It keeps its side while it is near them.
 
 #include <Eigen/Core>
 #include <cstdint>
@@ -11,11 +11,11 @@ namespace softcell::ppu {
 /// What one body remembers from substep to substep. A piece of a broken body takes over a copy.
 class KnownSides {
  public:
-  /// Forgets the walls that the body was not near in the last substep.
+  /// Forgets the triangles that the body was not near in the last substep.
   void begin_substep();
 
-  /// 1: the body is in front of the triangles of a rigid body's part; -1: behind them. The answer stays the same as long as the body is near
-  /// them, unless it looks like the other side in many substeps one after the other: pressed flat, a body may look so for some.
+  /// 1: the body is in front of the triangles of a rigid body's part; -1: behind them. While the body is near them, the answer changes only
+  /// after it has looked like the other side in many substeps: a body that is pressed flat may look so in a few.
   /// @param rigid  ContactRigid::number   @param part  Obstacle::part
   /// @param seen  above 0: it looks like the front now; below 0: like the back; 0: unclear
   float side_of(std::uint32_t rigid, std::uint32_t part, int seen);
@@ -45,7 +45,7 @@ class KnownSides {
     std::uint32_t rigid, part;
     bool is_near;  // in this substep
     int side;      // 0: not known
-    int doubts;    // substeps one after the other in which it looked like the other side
+    int doubts;    // substeps that showed the other side, since one last showed this side
   };
   struct KnownTrack {
     std::uint32_t rigid, part;

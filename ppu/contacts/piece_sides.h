@@ -1,5 +1,5 @@
 #pragma once
-// What a piece of a broken body knows of the walls near it.
+// What a piece of a broken body knows about the rigid triangles near it.
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -13,10 +13,10 @@
 
 namespace softcell::ppu {
 
-/// The piece is on the sides on which the whole was, and comes from well inside of it.
-/// @param whole        the whole body's  @param contact  likewise  @param positions  of its particles, metres, as contacts have them
-/// @param lattice      of the whole, in its own dimension: `contact` numbers its cells likewise
-/// @param particle_of  of each particle of the piece: which one of the whole it was
+/// Puts a piece on the sides on which the whole was, with an origin well inside the whole.
+/// @param whole, contact, positions  of the whole; the positions are those of its particles as contacts have them, in metres
+/// @param lattice      of the whole, in its own dimension; `contact` numbers the cells in the same order
+/// @param particle_of  for each particle of the piece, the particle of the whole that it was
 template <int kDimension>
 KnownSides sides_of_piece(const KnownSides& whole, const ContactModel& contact,
                           std::span<const Eigen::Vector3f> positions, const Lattice<kDimension>& lattice,

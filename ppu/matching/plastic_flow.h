@@ -51,7 +51,7 @@ class PlasticFlow {
 
   std::span<const Exact> rest() const { return rest_; }  ///< metres
   void set_rest(std::span<const Exact> rest);
-  /// How many cells of the rest shape have less volume than contacts let a cell have: they would push it back in each step, and a body
+  /// The number of cells of the rest shape with less volume than contacts allow. Contacts would push them back in each step, and a body
   /// that turns would turn faster and faster.
   std::size_t cells_that_contacts_hold() const;
 

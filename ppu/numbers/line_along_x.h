@@ -1,6 +1,6 @@
 #pragma once
-// Where a line along the x axis goes through a triangle, so that of triangles with an edge in common it meets one, or as many from either
-// side.
+// Where a line along the x axis goes through a triangle. Of two triangles with a common edge, a line through this edge meets one; at a fold
+// it meets both, from opposite sides, or neither.
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -9,8 +9,8 @@
 
 namespace softcell::ppu {
 
-/// Twice the area, of a line along x: above 0 with the point left of the way from a to b, as seen against x. The same but for its
-/// sign for the way back, however it is rounded: both triangles of an edge agree on which of them a line meets.
+/// Twice the area of the triangle a, b and a line along x, as seen against x: above 0 if the line is left of the way from a to b. The way
+/// from b to a gives exactly the negative, however it is rounded: both triangles of an edge agree on which of them a line meets.
 inline double area_beside(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double y, double z) {
   const bool swapped = std::pair(b.y(), b.z()) < std::pair(a.y(), a.z());
   const Eigen::Vector3d &from = swapped ? b : a, &to = swapped ? a : b;
@@ -18,7 +18,7 @@ inline double area_beside(const Eigen::Vector3d& a, const Eigen::Vector3d& b, do
   return swapped ? -area : area;
 }
 
-/// How often the edges of a triangle go round a point, across x: 1 or -1 inside, by the triangle's sense, else 0.
+/// How often the edges of a triangle go round a line along x: 1 counterclockwise as seen against x, -1 clockwise; 0: the line misses it.
 inline int turns_around(const std::array<Eigen::Vector3d, 3>& triangle, double y, double z) {
   int sum = 0;
   for (std::size_t k = 0; k < 3; ++k) {

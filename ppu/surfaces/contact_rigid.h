@@ -26,7 +26,7 @@ struct ContactRigid {
   Eigen::Matrix3f inverse_inertia = Eigen::Matrix3f::Zero();  ///< 1/(kg m^2)
   float friction = 0.5f;
   float restitution = 0;
-  /// None: it is free. Its engine lets it move along some axes only, or what it lies on holds it (supports.h).
+  /// Has a value if the engine lets the body move along some axes only, or if what it lies on holds it (supports.h). None: it is free.
   std::optional<HeldMobility> held = {};
 
   Eigen::Vector3f velocity_at(const Eigen::Vector3f& point) const {

@@ -48,7 +48,7 @@ struct Obstacle {
   std::span<const Eigen::Vector4f> planes = {};  ///< outward unit normal, and its distance from 0
   std::span<const std::array<Eigen::Vector3f, 3>> triangles = {};
   bool faces_bodies = false;  ///< of triangles: known to be wound so that their fronts are towards the bodies
-  std::uint32_t part = 0;     ///< which of the rigid body's: the triangles of one are wound alike
+  std::uint32_t part = 0;     ///< number within the rigid body: triangles of one part are wound alike
   std::span<const ObstacleEdge> edges =
       {};  ///< for triangles: three for each, in their order; none: their sides
 

@@ -64,7 +64,7 @@ bool is_sliver(const FaceOf<3>& triangle) {
   return normal_of(triangle).norm() <= kNarrow * longest;
 }
 
-/// Whether a line along an axis meets a box.
+/// Whether the line through a point along an axis meets a box.
 template <int kDimension>
 bool is_beside(const Bounds<kDimension>& box, int axis, const Eigen::Vector<float, kDimension>& point) {
   for (int d = 0; d < kDimension; ++d)
@@ -72,8 +72,8 @@ bool is_beside(const Bounds<kDimension>& box, int axis, const Eigen::Vector<floa
   return true;
 }
 
-/// How often a face goes round a line along an axis: 1 or -1, or 0 where it does not meet it. Faces beside each other agree on which of them it
-/// meets. @param ahead  whether it does so beyond the point
+/// How the line through a point along an axis crosses a face: 1 or -1, by the sense of the face; 0: not at all. Faces with a common edge
+/// agree on which of them the line crosses. @param ahead  if it crosses: whether beyond the point
 int turns_of(const FaceOf<2>& edge, int axis, const Vector2f& point, bool& ahead) {
   const int up = 1 - axis;
   const bool a_is_above = edge[0][up] > point[up], b_is_above = edge[1][up] > point[up];
@@ -181,7 +181,7 @@ SurfaceQuery<kDimension>::SurfaceQuery(std::vector<Face> faces) {
     if (!is_narrow_[i]) volume += volume_below(faces[i]);
   }
   faces_ = std::move(faces);
-  if (std::ranges::find(is_narrow_, false) == is_narrow_.end())  // of a body that is a line, or a point
+  if (std::ranges::find(is_narrow_, false) == is_narrow_.end())  // the body is a line or a point
     is_narrow_.assign(faces_.size(), false);
   if (volume < 0) outwards_ = -1;
   nodes_.resize(1);
@@ -316,9 +316,9 @@ typename SurfaceQuery<kDimension>::Turns SurfaceQuery<kDimension>::turns_along(i
   return turns;
 }
 
-/// The nonzero winding rule, as Solid has it: of a surface that reaches into itself the nearest face may look at a point that is inside. A
-/// line that the surface does not go round as often forwards as backwards meets a part that is not closed, and says nothing; so two must
-/// agree. Where none do, the nearest face decides.
+/// The nonzero winding rule, as in Solid: where a surface reaches into itself, the nearest face may look at a point that is inside. A line
+/// whose crossings do not sum up to 0 meets a part that is not closed and does not count. Most of the other lines along axes decide; if
+/// there are as many for as against, the nearest face does.
 template <int kDimension>
 bool SurfaceQuery<kDimension>::is_inside(const Vector& point, const Nearest& nearest) const {
   if ((point.array() < bounds().low.array()).any() || (point.array() > bounds().high.array()).any())
@@ -353,7 +353,7 @@ std::optional<SurfaceHit<kDimension>> SurfaceQuery<kDimension>::cast_sphere(cons
   for (;;) {
     const Vector centre = length > 0 ? Vector(from + done / length * along) : from;
     const Nearest found = nearest(centre);
-    const float distance = std::sqrt(found.square);  // it comes from outside
+    const float distance = std::sqrt(found.square);  // not below 0: the sphere comes from outside
     if (distance - radius <= near) {
       SurfaceHit hit = hit_of(found.face, length > 0 ? done / length : 0, found.position);
       if (distance > 0) hit.normal = (centre - found.position) / distance;

@@ -102,7 +102,7 @@ TEST_P(Box2dAttachments, TwoFreeBodiesKeepTheirMomentum) {
   }
 }
 
-/// What gives way is stretched, and its impulses lead past each other where it also moves across.
+/// A compliant attachment is stretched: if its ends also move sideways, its two impulses do not lie on one line.
 TEST_P(Box2dAttachments, TwoFreeBodiesThatAreApartKeepTheirAngularMomentum) {
   const auto spin_of = [](const SoftBody<2>& body, double& size) {
     double spin = 0;
@@ -285,7 +285,7 @@ TEST(Box2dAttachmentsOfDrawnEdges, WhatIsWeldedAsAWholeCarriesARigidBody) {
   }
 }
 
-/// Box2D lets nothing fall, and moves nothing, that is dynamic and has no mass: without a fixture, or with one of density 0.
+/// In Box2D a dynamic body without mass neither falls nor is moved. It has no fixture, or one of density 0.
 TEST_P(Box2dAttachments, HoldToADynamicBodyWithoutMass) {
   for (const bool with_fixture : {false, true}) {
     for (const AttachmentKind kind : {AttachmentKind::kWeld, AttachmentKind::kHinge, AttachmentKind::kRope}) {

@@ -154,7 +154,7 @@ TEST(BulletSoftBodies, CarryARigidBox) {
   EXPECT_LT(fastest(body), 0.03f);
 }
 
-/// Its spheres are those of the other model from then on.
+/// From then on the body has the spheres of the other model.
 TEST(BulletSoftBodies, ABodyOfALargerOrSmallerModelCanBeAssigned) {
   const auto small = block_model({2, 2, 2}, stiff(0.1f)), large = block_model({6, 4, 6}, stiff(0.1f));
   for (const auto& [before, after] : {std::pair(small, large), std::pair(large, small)}) {

@@ -406,7 +406,7 @@ TEST(Plasticity, ARestShapeIsRestored) {
   EXPECT_THROW(other.set_rest_positions(rest), std::runtime_error);
 }
 
-/// Contacts push crushed cells back, and would do so for ever.
+/// Contacts push crushed cells back: with such a rest shape they would do so for ever.
 TEST(Plasticity, RefusesRestShapesThatAreFlatOrMirrored) {
   SoftBody<3> body = tumbling_body(metal(0.03f));
   const auto shape = [&](float share) {

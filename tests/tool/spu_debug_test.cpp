@@ -231,7 +231,7 @@ TEST(SpuDebug, HasAThreadForEachSpe) {
   EXPECT_NE(end.output.find("SPE 2 executed 27474 instructions"), std::string::npos) << end.output;
 }
 
-/// It waits for a mailbox that nobody fills. Its registers are there to be read; when it goes on from there it has ended.
+/// The program fails as it waits for a mailbox that nobody fills. The debugger can read its registers there; when it goes on, it ends.
 TEST(SpuDebug, StandsWhereItFailsBeforeItEnds) {
   Debugged spu(debugged_file("mailbox_echo"));
   std::string stop = spu.ask("c"), said;

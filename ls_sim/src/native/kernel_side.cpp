@@ -27,8 +27,8 @@ thread_local KernelContext* context_of_thread = nullptr;
 // function(context) on another stack, as a plain call: a jump there and back by Boost.Context costs three
 // times as much, for it exchanges registers that a call keeps, an x87 mode that nobody uses, and the
 // processor predicts no return behind it. The unwinder finds its way from the worker's stack to the kernel's.
-// How much Boost has saved on `stack` depends on its version, so that its alignment is made here. A kernel may come with the direction flag
-// set, which code of the host takes for clear: its copies would go backwards.
+// How much Boost has saved on `stack` depends on its version, so this function aligns it. It also clears the direction flag: a kernel may
+// have set it, and then copies that the host's code makes would go backwards.
 extern "C" bool softcell_call_on_stack(ServeRequest* function, KernelContext* context, void* stack);
 asm(R"(
         .text

@@ -240,7 +240,7 @@ TEST_P(SolvedBy, TwoFreeBodiesKeepTheirMomentum) {
   }
 }
 
-/// About the origin.
+/// The angular momentum about the origin.
 Eigen::Vector3d spin_of(const SoftBody<3>& body) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (std::size_t i = 0; i < body.model().particles(); ++i)
@@ -257,7 +257,7 @@ Eigen::Vector3d spin_of(const btRigidBody& body) {
          inertia * to_eigen(body.getAngularVelocity()).cast<double>();
 }
 
-/// What gives way is stretched, and its impulses lead past each other where it also moves across.
+/// A compliant attachment is stretched: if its ends also move sideways, its two impulses do not lie on one line.
 TEST_P(SolvedBy, TwoFreeBodiesThatAreApartKeepTheirAngularMomentum) {
   if (kSlowBuild && GetParam() == Who::kSpes) GTEST_SKIP() << "with sanitizers, which have the others";
   for (const AttachmentKind kind : {AttachmentKind::kWeld, AttachmentKind::kHinge, AttachmentKind::kRope}) {
@@ -305,7 +305,7 @@ TEST_P(SolvedBy, AFreeBodyAndARigidOneThatAreApartKeepTheirAngularMomentum) {
   }
 }
 
-/// It hauls: each end comes nearer by a quarter of a cell in a substep at most, and bodies get no faster than that.
+/// The rope pulls its ends together: each comes nearer by at most a quarter of a cell in a substep, and bodies get no faster than that.
 TEST_P(SolvedBy, ARopeThatIsTooShortHauls) {
   AttachedWorld w(GetParam(), {0, 0, 0});
   SoftBody<3>& left = w.add(block({0.4f, 0.4f, 0.4f}), settings_of(kCell, 0.6f, 0.3f), {-1.2f, 0, 0});

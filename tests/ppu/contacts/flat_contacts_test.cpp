@@ -123,7 +123,7 @@ TEST_P(FlatContacts, WhatIsDrawnRestsOnTheFloor) {
   EXPECT_EQ(w->box2d.GetBodyCount(), 1);
 }
 
-/// Box2D lets nothing fall, and moves nothing, that is dynamic and has no mass.
+/// In Box2D a dynamic body without mass neither falls nor is moved.
 TEST_P(FlatContacts, ADynamicBodyWithoutMassHoldsWhatFallsOnIt) {
   const auto w = world();
   b2Body* const table = w->add_box({0, 0}, {1, 0.1f});

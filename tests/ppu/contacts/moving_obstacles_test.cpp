@@ -99,7 +99,7 @@ TEST(MovingObstacles, AWallThatIsMovedPushesABodyAlong) {
   }
 }
 
-/// Bullet's solver multiplies what impulses do by these factors: characters do not turn, games in a plane stay in it.
+/// Bullet's solver multiplies the effect of impulses by these factors: characters do not turn, and games in a plane stay in it.
 TEST(MovingObstacles, MoveAlongAndAboutTheAxesThatBulletLeavesThem) {
   const auto falls_on = [](const btVector3& linear, const btVector3& angular, bool attached) {
     ContactWorld w;

@@ -469,7 +469,7 @@ TEST(SurfaceContacts, ASleeperSleepsOnWhenSomethingFarIsRemoved) {
   ContactWorld w;
   w.add_floor();
   btRigidBody& far = w.add(std::make_unique<btBoxShape>(btVector3(1, 1, 1)), 0, {8, 1, 0});
-  w.add(std::make_unique<btBoxShape>(btVector3(1, 1, 1)), 0, {-8, 1, 0});  // comes to its place in the list
+  w.add(std::make_unique<btBoxShape>(btVector3(1, 1, 1)), 0, {-8, 1, 0});  // takes its place in the list
   w.bodies.let_sleep(SleepSettings{});
   const SoftBody<3>& body = w.add(cube(0.4f, 0.1f), settings_of(0.1f, 0.6f, 0.4f), {0, 0.2f, 0});
   w.run(240);

@@ -129,7 +129,7 @@ TEST(SurfaceQuery, IsTheSameAsLookingAtEachTriangle) {
   EXPECT_GT(hits, 50);
 }
 
-/// As it is drawn.
+/// The mesh of a body as it is drawn.
 TriangleMesh drawn_mesh(const SoftBody<3>& body) {
   TriangleMesh mesh = body.model().mesh();
   mesh.positions = ContactWorld::drawn(body);
@@ -146,7 +146,7 @@ SoftBody<3> folded_cube() {
   return body;
 }
 
-/// A crushed one: each particle is anywhere within a cell of where it was.
+/// A crushed cube: each particle lies somewhere within a cell of where it was.
 SoftBody<3> crumpled_cube() {
   SoftBody<3> body = unit_cube();
   std::mt19937 engine(11);
@@ -158,7 +158,7 @@ SoftBody<3> crumpled_cube() {
   return body;
 }
 
-/// Parts that reach into each other, and bodies that reach into themselves.
+/// Bodies with parts that reach into each other, and bodies that reach into themselves.
 TEST(SurfaceQuery, KnowsWhatIsInsideWhereTheSurfaceLiesWithinTheBody) {
   const auto at_rest = [](const TriangleMesh& mesh, float cell) {
     return SoftBody<3>(make_soft_body_model(mesh, settings_of(cell)), Vector3f(0.1f, 0.2f, 0.3f));
@@ -185,7 +185,7 @@ TEST(SurfaceQuery, KnowsWhatIsInsideWhereTheSurfaceLiesWithinTheBody) {
   }
 }
 
-/// @return  the first share of the way, in steps, at which a triangle is within the radius; beyond 1: nowhere
+/// @return  the first share of the way, in small steps, at which a triangle is within the radius of the centre; beyond 1: none is
 double first_touch(const TriangleMesh& mesh, const Vector3f& from, const Vector3f& to, double radius) {
   constexpr int kSteps = 400;
   for (int i = 0; i <= kSteps; ++i) {

@@ -172,7 +172,7 @@ TEST(TriggerVolumes, MeetBodiesThatSleepAndDoNotWakeThem) {
   EXPECT_TRUE(body.asleep());
 }
 
-/// Bullet's broad phase learns only later in a substep where the program has moved it.
+/// Bullet's broad phase learns only later in a substep where the program has moved a trigger volume.
 TEST(TriggerVolumes, MeetABodyInTheSubstepInWhichTheProgramHasMovedThem) {
   Trigger hand(std::make_unique<btSphereShape>(0.2f), {5, 0, 0});
   ContactWorld w({0, 0, 0});

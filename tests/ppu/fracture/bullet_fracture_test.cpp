@@ -179,7 +179,7 @@ void expect_both_momenta(SolverFactory* solvers) {
   EXPECT_LT((after.angular_momentum - before.angular_momentum).norm(), 1e-5 * scale * 30);
 }
 
-/// Whichever way a ground of triangles is wound.
+/// The test winds the triangles of the ground both ways.
 TEST(BulletFracture, PiecesStayOnTheirSideOfTriangles) {
   for (const bool upwards : {true, false}) {
     SCOPED_TRACE(upwards);

@@ -161,7 +161,7 @@ DebugStop DebugSession::step(int spe, const Interrupted& interrupted) {
   return back_before_a_fault(run_to({.kind = Goal::kStepOf, .spe = spe}, interrupted), interrupted);
 }
 
-/// Once a run has ended, its registers and local stores are gone: of one that has failed somebody will want to see them.
+/// Once a run has ended, its registers and local stores are gone. After a fault the user wants to see them, so the session goes back there.
 DebugStop DebugSession::back_before_a_fault(const DebugStop& stop, const Interrupted& interrupted) {
   if (stop.kind != DebugStop::kEnded || std::exchange(shown_fault_, count_) == count_) return stop;
   const auto failed =

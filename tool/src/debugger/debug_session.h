@@ -32,7 +32,7 @@ struct Watchpoint {
 struct DebugStop {
   enum Kind : std::uint8_t { kStep, kBreakpoint, kWatchpoint, kInterrupted, kBeginning, kFault, kEnded };
   Kind kind = kStep;
-  int spe = 0;                 ///< the SPE whose instruction is next; of kFault, the one that has failed
+  int spe = 0;                 ///< the SPE whose instruction is next; for kFault, the one that has failed
   Watchpoint watchpoint = {};  ///< of kWatchpoint
 };
 
@@ -54,8 +54,8 @@ class DebugSession final : private ls_sim::Debugger {
   DebugStop start();
 
   // @pre the last stop was not kEnded
-  // A program that fails ends twice: first it stands before the last instruction of the run again (kFault), and when it goes on from there it
-  // ends (kEnded).
+  // A program that fails stops twice: first before the last instruction of the run (kFault), and when it goes on from there, at its end
+  // (kEnded).
   DebugStop go_on(const Interrupted& interrupted);
   /// Executes one instruction of this SPE; other SPEs may execute some meanwhile.
   DebugStop step(int spe, const Interrupted& interrupted);
@@ -131,7 +131,7 @@ class DebugSession final : private ls_sim::Debugger {
   std::array<ls_sim::DebuggedSpe*, dma::kSpeCount> states_{};
   std::array<std::uint32_t, dma::kSpeCount> positions_{};
   std::uint64_t count_ = 0;
-  std::uint64_t shown_fault_ = 0;  ///< the last instruction of a run that has failed and was shown; 0: none
+  std::uint64_t shown_fault_ = 0;  ///< the instruction that the last kFault stood before; 0: none
   Goal goal_;
   std::optional<Watchpoint> accessed_;  ///< by the previous instruction
   std::optional<DebugStop> best_;       ///< for kLastStopBefore

@@ -295,7 +295,7 @@ std::string GdbServer::resume(std::string_view action) {
   return report(stop_);
 }
 
-/// In the debugger's own window.
+/// Shows a sentence in the debugger's window.
 void GdbServer::say(const std::string& sentence) { connection_.send("O" + hexadecimal_of(sentence + "\n")); }
 
 std::string GdbServer::report(const DebugStop& stop) {

@@ -65,8 +65,8 @@ struct SoftRayHit2d {
 /// collision group, from -1 downwards: a fixture of the caller in that group never collides with the body. If a particle is NaN or
 /// infinite, begin_step() throws std::runtime_error.
 ///
-/// Call nothing but const functions within a step of Box2D, as from a contact listener: as Box2D's own, the others need a world that is not
-/// locked. b2World::ShiftOrigin() does not move soft bodies: translate() each of them by the same way.
+/// Within a step of Box2D, for example in a contact listener, call const functions only: like Box2D's own, the others need a world that is
+/// not locked. b2World::ShiftOrigin() does not move soft bodies: call translate() to move each of them by as much.
 class Box2dSoftBodies {
  public:
   /// With ContactMethod::kSpheres a particle moves at most this many cells in one step; faster particles are slowed down, which takes momentum from

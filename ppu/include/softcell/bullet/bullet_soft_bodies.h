@@ -174,9 +174,9 @@ class BulletSoftBodies {
   ///
   /// A sleeping body wakes when something that moves touches it or, with surfaces, reaches its box; when gravity changes; when its user
   /// changes it; and when another soft body of this object, on which it may have lain, is changed or removed. With surfaces it also wakes
-  /// when an object near it is moved, removed or made a trigger volume, or gets another shape, size, group or mask. Not so with spheres, nor
-  /// for a soft body of another BulletSoftBodies, nor when points within a shape change that keeps its box: wake what rested on these
-  /// yourself, a soft body by add_velocity({0, 0, 0}).
+  /// when an object near it is moved, removed or made a trigger volume, or gets another shape, size, group or mask. It does not wake then
+  /// with spheres, for a soft body of another BulletSoftBodies, or if points within a shape change while its box stays the same: wake what
+  /// rested on these yourself, a soft body by add_velocity({0, 0, 0}).
   void let_sleep(const std::optional<SleepSettings>& settings);
 
   /// Appends the contacts at which soft bodies that touch with their surfaces pressed on something in the last substep.
@@ -207,7 +207,7 @@ class BulletSoftBodies {
 
   SoftBodyTimes times() const;  ///< since the construction
 
-  /// Counts the cells, of bodies that touch with their surfaces, that are crushed as the bodies are now, which it looks up in each call.
+  /// Counts the crushed cells of the bodies that touch with their surfaces. Each call looks at all of their cells as they are now.
   /// softcell keeps crushed cells from being pressed further and pushes them back. If there are many for long, a body is
   /// too soft or too light for what lies on it.
   CrushedCellCount crushed_cells() const;

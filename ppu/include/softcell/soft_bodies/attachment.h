@@ -53,12 +53,12 @@ struct AttachmentSettings {
   /// Metres. The place of a hinge; without a value, the middle of the patch. The other end of a rope that goes to the world or to a rigid
   /// body; without a value, the rigid body's centre.
   std::optional<Vector> point = {};
-  Vector axis = Vector::UnitX();  ///< of a hinge in three dimensions; of any length but 0
-  /// Metres, of a rope; without a value, the present distance of its ends. A shorter one hauls: each end comes nearer by up to a quarter of a
-  /// cell in a substep, with cells of 0.1 m and 120 substeps a second 3 m/s, and its body keeps a part of that speed. One that gives way
-  /// (compliance) pulls as a spring.
+  Vector axis = Vector::UnitX();  ///< of a hinge in three dimensions; its length may be any but 0
+  /// Metres, of a rope; without a value, the present distance of its ends. A shorter rope pulls its ends together: each comes nearer by up
+  /// to a quarter of a cell in a substep, which is 3 m/s with cells of 0.1 m and 120 substeps a second, and its body keeps a part of that
+  /// speed. A compliant rope pulls like a spring.
   std::optional<float> length = {};
-  float compliance = 0;  ///< m/N: how much the attachment gives; 0: not at all
+  float compliance = 0;  ///< m/N: how far a force stretches the attachment; 0: not at all
   /// N: the largest force that the attachment carries. It breaks when it would have to carry more.
   float break_force = std::numeric_limits<float>::infinity();
   /// Whether the two sides touch each other. Without a value, those of ropes do, and those of welds and hinges do not.

@@ -146,8 +146,8 @@ class SoftBody {
   /// Puts the body back into the model's shape, also a plastic body. Keeps its centre, mean orientation and both momenta.
   void reset_deformation();
   /// Gives the body another rest shape, for example that of a saved body: the position of each particle in metres, in any frame.
-  /// @throws std::runtime_error  a position is not finite, there are more or fewer than particles, a cell is flat, turned inside out as those
-  /// of a mirrored shape are, or of less than half of the model's volume, or the model has too many particles for plastic bodies
+  /// @throws std::runtime_error  a position is not finite; there are more or fewer positions than particles; a cell is flat, turned inside
+  /// out (as all are in a mirrored shape) or has less than half of its volume in the model; the model has too many particles for plasticity
   void set_rest_positions(std::span<const Vector> rest);
   void add_velocity(const Vector& dv);                                 ///< m/s, to every particle
   void add_particle_velocity(std::size_t particle, const Vector& dv);  ///< m/s

@@ -58,8 +58,8 @@ class SurfaceQuery {
   /// `from`, the share is 0. The normal points from the surface to the sphere's centre. @param radius  metres, above 0
   std::optional<Hit> cast_sphere(const Vector& from, const Vector& to, float radius) const;
 
-  /// Metres from a point to the nearest place of the surface; below 0 inside the body: where a line from the point leaves the body more or
-  /// less often than it enters it. Where parts reach into each other, or a body is crushed, the nearest place may lie within.
+  /// Metres from a point to the nearest place of the surface; below 0 inside the body. A point is inside if a line from it does not leave
+  /// the body as often as it enters it. If parts reach into each other, or a body is crushed, the nearest place may lie inside the body.
   float distance(const Vector& point) const;
 
   /// The box around the surface, metres.
@@ -79,7 +79,7 @@ class SurfaceQuery {
     std::uint32_t face = 0;
     Vector position = Vector::Zero();
   };
-  /// How often the surface goes round a line along an axis, by its sense: in front of a point, and in all.
+  /// How often a line along an axis crosses the surface, 1 or -1 by the sense of each face: beyond a point, and in all.
   struct Turns {
     int ahead = 0, all = 0;
   };
@@ -96,7 +96,7 @@ class SurfaceQuery {
 
   std::vector<Face> faces_;             ///< in the order of the tree
   std::vector<std::uint32_t> numbers_;  ///< for each of these: its number in the surface
-  std::vector<bool> is_narrow_;         ///< of these: which way they look is rounding
+  std::vector<bool> is_narrow_;         ///< for each of these: its normal is mere rounding
   std::vector<Node> nodes_;             ///< the root first
   float outwards_ = 1;                  ///< -1 if the surface's faces look inwards
 };
