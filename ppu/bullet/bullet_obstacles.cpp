@@ -199,6 +199,12 @@ void set_mobility(const btRigidBody& body, ContactRigid& rigid) {
                             .angular = rigid.inverse_inertia};
 }
 
+/// Without the components along, or about, the axes that a factor of 0 keeps still.
+btVector3 where_it_moves(const btVector3& change, const btVector3& factor) {
+  return {factor.x() == 0 ? 0 : change.x(), factor.y() == 0 ? 0 : change.y(),
+          factor.z() == 0 ? 0 : change.z()};
+}
+
 /// An object's motion in a substep, metres.
 struct Way {
   Vector3f along = Vector3f::Zero();
@@ -485,8 +491,9 @@ void BulletObstacles::apply(const std::vector<bool>& at_rest) {
     SC_ASSERT(btRigidBody::upcast(objects_[i]) != nullptr, "object {} of {} has a mass and is no rigid body",
               i, objects_.size());
     btRigidBody& body = *btRigidBody::upcast(objects_[i]);
-    body.setLinearVelocity(body.getLinearVelocity() + to_bullet(dv));
-    body.setAngularVelocity(body.getAngularVelocity() + to_bullet(dw));
+    body.setLinearVelocity(body.getLinearVelocity() + where_it_moves(to_bullet(dv), body.getLinearFactor()));
+    body.setAngularVelocity(body.getAngularVelocity() +
+                            where_it_moves(to_bullet(dw), body.getAngularFactor()));
     if (!at_rest[i]) body.activate();
   }
 }

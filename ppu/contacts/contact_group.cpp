@@ -42,9 +42,18 @@ void apply(const SoftContact& contact, const ContactSides& sides, const Vector3f
   rigid.spin -= change.spin;
 }
 
-void solve_normal(SoftContact& contact, const ContactSides& sides) {
+/// Velocity that moves the two out of each other, m/s along the normal; 0: they are not deep enough.
+float push_velocity(const SoftContact& contact, float spacing, float step) {
+  const float excess = contact.depth - kSlop * spacing;
+  return excess > 0 ? std::min(kPushShare * excess, kMostPush * spacing) / step : 0.0f;
+}
+
+void solve_normal(SoftContact& contact, const ContactSides& sides, float step) {
   const float v = contact.normal.dot(relative_velocity(contact, sides));
-  const float wanted = contact.impulse + (contact.least_velocity - v) / contact.normal_mobility;
+  float least = contact.least_velocity;
+  // Held particles do not give way to a push: the rigid body itself must come out, as its engine may press it in again in each substep.
+  if (contact.on_held) least = std::max(least, push_velocity(contact, sides.a->spacing(), step));
+  const float wanted = contact.impulse + (least - v) / contact.normal_mobility;
   const float impulse = std::max(0.0f, wanted);
   apply(contact, sides, (impulse - contact.impulse) * contact.normal);
   contact.impulse = impulse;
@@ -62,12 +71,6 @@ void solve_friction(SoftContact& contact, const ContactSides& sides) {
   if (length > most) wanted *= most / length;
   apply(contact, sides, wanted - contact.friction_impulse);
   contact.friction_impulse = wanted;
-}
-
-/// Velocity that moves the two out of each other, m/s along the normal; 0: they are not deep enough.
-float push_velocity(const SoftContact& contact, float spacing, float step) {
-  const float excess = contact.depth - kSlop * spacing;
-  return excess > 0 ? std::min(kPushShare * excess, kMostPush * spacing) / step : 0.0f;
 }
 
 /// Kernels number particles and cells with 16 bits; the highest number says that there is none.
@@ -209,7 +212,7 @@ void hold_pushes(spu::SolveContact& contact) {
 
 void iterate(std::span<SoftContact> contacts, const ContactSides& sides, float step) {
   for (SoftContact& contact : contacts) {
-    solve_normal(contact, sides);
+    solve_normal(contact, sides, step);
     solve_friction(contact, sides);
     solve_push(contact, sides, step);
   }

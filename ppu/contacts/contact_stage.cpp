@@ -46,6 +46,14 @@ Vector3f of_anchor(const spu::SolveAnchor& anchor, const ContactBody& body, cons
   return sum;
 }
 
+/// Whether supports may hold a rigid body that something presses in a direction: they know nothing of the axes along which its engine does
+/// not let it move.
+bool moves_freely_along(const ContactRigid& rigid, const Vector3f& direction) {
+  constexpr float kNearlyAll = 0.9f;
+  if (rigid.inverse_mass == 0) return false;
+  return !rigid.held || direction.dot(rigid.held->linear * direction) > kNearlyAll * rigid.inverse_mass;
+}
+
 /// From a point to the anchor's place before the step.
 Vector3f arm_of(const auto& anchor, const ContactBody& body, const Vector3f& point) {
   return of_anchor(anchor, body, [&](std::size_t i) -> Vector3f { return body.positions[i] - point; });
@@ -314,7 +322,7 @@ void ContactStage::find_presses(const Group& group, std::span<const ContactRigid
   const ContactBody& body = bodies_[group.a];
   const auto for_each_press = [&](const auto& work) {
     for (const SoftContact& contact : group.contacts)
-      if (rigids[contact.rigid].inverse_mass > 0 && !rigids[contact.rigid].held) work(contact);
+      if (moves_freely_along(rigids[contact.rigid], contact.normal)) work(contact);
   };
   moved_by_all_.resize(std::max(moved_by_all_.size(), body.velocities.size()));
   for_each_press([&](const SoftContact& contact) {

@@ -425,6 +425,21 @@ TEST_P(SolvedBy, WhatIsWeldedAsAWholeCarriesARigidBody) {
   }
 }
 
+/// Bullet hands the weight of the upper ones down after softcell has solved the contacts.
+TEST_P(SolvedBy, WhatIsWeldedAsAWholeCarriesAStack) {
+  AttachedWorld w(GetParam());
+  const Table table(w);
+  std::vector<btRigidBody*> stack;
+  for (int k = 0; k < 4; ++k)
+    stack.push_back(&w.add(crate(), 20, {0, 1.251f + 0.2f * static_cast<float>(k), 0}));
+  w.run(300);
+  const float settled = height_of(*stack[0]);
+  EXPECT_GT(settled, 1.25f - 0.15f * kCell);
+  w.run(300);
+  EXPECT_NEAR(height_of(*stack[0]), settled, 0.02f * kCell);
+  EXPECT_GT(height_of(*stack[3]), settled + 0.55f) << "it stands";
+}
+
 TEST_P(SolvedBy, WhatIsWeldedAsAWholeLiftsARigidBody) {
   AttachedWorld w(GetParam());
   const Table table(w);

@@ -132,5 +132,25 @@ TEST(MovingObstacles, MoveAlongAndAboutTheAxesThatBulletLeavesThem) {
   }
 }
 
+/// What it lies on helps it to carry, as if it could move along all axes.
+TEST(MovingObstacles, ALightCrateOfAGameInAPlaneCarriesAHeavySoftBody) {
+  for (const auto& [linear, angular] :
+       {std::pair(btVector3(1, 1, 0), btVector3(0, 0, 1)), std::pair(btVector3(0, 1, 0), btVector3(0, 0, 0)),
+        std::pair(btVector3(1, 1, 1), btVector3(0, 0, 0))}) {
+    ContactWorld w;
+    w.add_floor();
+    btRigidBody& box = w.add(std::make_unique<btBoxShape>(btVector3(0.2f, 0.2f, 0.2f)), 2, {0, 0.2f, 0});
+    box.setLinearFactor(linear);
+    box.setAngularFactor(angular);
+    SoftBodySettings heavy = settings_of(kOfCube, 0.8f, 0.4f);
+    heavy.density = 500;
+    const SoftBody<3>& soft = w.add(make_box({0.3f, 0.3f, 0.3f}, kOfCube), heavy, {0, 0.56f, 0});
+    ASSERT_GT(soft.model().mass(), 5);
+    w.run(180);
+    EXPECT_GT(ContactWorld::lowest_drawn(soft), 0.4f - 0.1f * kOfCube);
+    EXPECT_NEAR(box.getWorldTransform().getOrigin().y(), 0.2f, 0.01f);
+  }
+}
+
 }  // namespace
 }  // namespace softcell::ppu
