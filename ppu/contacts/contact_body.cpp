@@ -204,10 +204,6 @@ Eigen::Vector3f inner_place(const ContactModel& model, std::uint32_t cell,
   return anchor_in_cell(model.lattice(), inner.cell, inner.xi).of(positions);
 }
 
-std::uint32_t middle_cell(const ContactModel& model) {
-  return static_cast<std::uint32_t>(model.lattice().cells.size() / 2);
-}
-
 void ContactBody::hold(std::uint32_t particle, const Eigen::Vector3f& velocity) {
   SC_ASSERT(!asleep && particle < positions.size(), "particle {} of {} is held, of a body that sleeps or not",
             particle, positions.size());

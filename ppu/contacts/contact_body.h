@@ -114,8 +114,6 @@ class ContactModel {
 /// A place well inside a body, near one of its cells, in metres. @param positions  of the body's particles
 Eigen::Vector3f inner_place(const ContactModel& model, std::uint32_t cell,
                             std::span<const Eigen::Vector3f> positions);
-/// The cell that stands for the middle of a body.
-std::uint32_t middle_cell(const ContactModel& model);
 
 struct ContactBody;
 

@@ -329,10 +329,12 @@ class ObstacleContacts {
   /// Finds out whether the whole body, with all that is inside of it, has been pressed through triangles: small bodies can be. Then the
   /// last place that it reached without passing through one tells on which side it belongs.
   void find_origin(const KnownTriangles& triangles) {
-    const Vector3f middle =
-        obstacle_.to_own(inner_place(*body_.model, middle_cell(*body_.model), body_.positions));
+    const auto middle_cell = static_cast<std::uint32_t>(body_.lattice().cells.size() / 2);
+    const Vector3f middle = obstacle_.to_own(inner_place(*body_.model, middle_cell, body_.positions));
     KnownSides& sides = *body_.sides;
     const auto [last, last_middle] = track_of(triangles, middle);
+    if (!is_any_near(triangles, last, middle))
+      return sides.set_track(rigid_.number, obstacle_.part, {middle, middle});
     Vector3f safe = last;
     // If the body has been pressed through, its safe place follows it on the other side.
     const Vector3f here =
@@ -344,6 +346,15 @@ class ObstacleContacts {
     }
     if (is_crossed(triangles, safe, middle)) origin_ = safe;
     sides.set_track(rigid_.number, obstacle_.part, {safe, middle});
+  }
+
+  /// Whether a triangle may lie between two places, or moved_off() the second one. Most bodies are thicker than that: one look spares several.
+  bool is_any_near(const KnownTriangles& triangles, const Vector3f& from, const Vector3f& to) const {
+    bool any = false;
+    for_each_triangle(triangles,
+                      widened({from.cwiseMin(to), from.cwiseMax(to)}, kPressedThrough * body_.spacing()),
+                      [&](std::uint32_t) { any = true; });
+    return any;
   }
 
   KnownSides::Track track_of(const KnownTriangles& triangles, const Vector3f& middle) const {
