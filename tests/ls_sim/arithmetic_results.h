@@ -1,5 +1,5 @@
 #pragma once
-// What the results of the kernel `arithmetic` say of the mode that it computed in.
+// Derives from the results of the kernel `arithmetic` in which arithmetic mode it ran.
 
 #include <gtest/gtest.h>
 
@@ -9,10 +9,10 @@
 
 namespace softcell::ls_sim {
 
-/// All lanes of a vector are equal; the four are computed as the kernel begins, then after calls out of it.
+/// Eight vectors, each with four equal lanes: four results when the kernel begins, then the same four after it has called channels.
 using ArithmeticResults = std::array<std::array<float, 4>, 8>;
 
-/// @param below_one  1 less next to nothing  @param above_minus_one  -1 and next to nothing
+/// @param below_one  result of 1 minus a tiny number  @param above_minus_one  result of -1 plus a tiny number
 inline std::string rounding_of(float below_one, float above_minus_one) {
   const bool less = below_one == std::nextafterf(1, 0), more = above_minus_one == std::nextafterf(-1, 0);
   if (!(less || below_one == 1) || !(more || above_minus_one == -1)) return "as no host does";
@@ -20,8 +20,8 @@ inline std::string rounding_of(float below_one, float above_minus_one) {
   return more ? "upward" : "to the nearest number";
 }
 
-/// Single precision of an SPU: truncation, denormal results and operands to zero. [SPU ISA, single precision]
-/// documented
+/// Expects the single precision of an SPU, which truncates and treats denormal results and operands as zero.
+/// [SPU ISA, single precision] documented
 inline void expect_arithmetic_of_an_spu(const ArithmeticResults& results) {
   for (const std::size_t first : {0u, 4u}) {
     const std::string kernel = first == 0 ? "a kernel that begins" : "a kernel that has called out";

@@ -16,7 +16,7 @@
 namespace softcell::ls_sim::assisted {
 namespace {
 
-/// fwrite of `count` items of `size` bytes to what `file` stands for, in the place of standard output.
+/// Calls fwrite of `count` items of `size` bytes on standard output, which is `file` meanwhile. @return  what fwrite returns
 std::uint32_t fwrite_to(const char* file, std::uint32_t size, std::uint32_t count) {
   std::vector<std::byte> local_store(dma::kLocalStoreBytes);
   constexpr std::uint32_t kRequest = 0x100, kData = 0x1000, kStandardOutput = 2;

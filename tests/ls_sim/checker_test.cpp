@@ -54,8 +54,8 @@ TEST_P(CheckedKernels, BssTakenForZeroAndPutUnwrittenAreFound) {
 
 TEST_P(CheckedKernels, PaddingNeedsNotBeWritten) { EXPECT_EQ(findings_of("padded", GetParam()), Texts{}); }
 
-/// The checker alone, told of accesses and commands as an engine would. Positions are the addresses of the
-/// entry and of what follows it.
+/// The checker alone. The tests report accesses and commands to it as an engine would. Positions are the addresses of
+/// the entry and of the instructions after it.
 class CheckerTest : public testing::Test {
  protected:
   class Quiet final : public ChannelPort {
@@ -130,7 +130,7 @@ class CheckerTest : public testing::Test {
 
 using dma::MfcOpcode;
 
-/// Makes the instruction that runs next one of those in `buffer_`, at a channel.
+/// Calls a channel from an instruction in `buffer_`, as if the kernel executed code there.
 class CheckerOfCode : public CheckerTest {
  protected:
   void run_in_buffer(std::uint32_t offset) {

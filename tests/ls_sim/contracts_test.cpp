@@ -1,4 +1,4 @@
-// What callers inside ls_sim, and of its public headers, must keep to: who does not is told by an assertion,
+// The preconditions of functions inside ls_sim and of its public headers: an assertion reports a caller that breaks one,
 // with the values.
 
 #include <chrono>

@@ -1,5 +1,5 @@
-// Calls of programs with any arguments: formats of printf and scanf, addresses, sizes. The first byte chooses library and kind of program,
-// the second the function; the rest is the local store, with the arguments at address 0, and what the program reads as well.
+// libFuzzer target: calls of programs with any arguments: formats of printf and scanf, addresses, sizes. The first byte selects the library
+// and the kind of program, the second the function. The rest is the local store, with the arguments at address 0, and also the standard input.
 
 #include <algorithm>
 #include <atomic>
@@ -31,7 +31,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     read += count;
     return count;
   };
-  std::atomic<bool> interrupted = data[0] >= 128;  // such a run waits for nothing
+  std::atomic<bool> interrupted = data[0] >= 128;  // an interrupted run waits for nothing
   assisted::FilesInFolder files(calls, interrupted);
   assisted::AssistedCalls served(
       files, local_store, (data[0] & 2) != 0 ? assisted::CallerKind::kHost : assisted::CallerKind::kSpu);

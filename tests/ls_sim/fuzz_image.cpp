@@ -1,4 +1,4 @@
-// libFuzzer target: any bytes give an image that fits a local store, or one sentence of refusal.
+// libFuzzer target: any bytes are loaded as an image that fits a local store, or are refused with one sentence.
 
 #include <stdexcept>
 #include <string>

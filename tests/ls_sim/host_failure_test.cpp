@@ -1,4 +1,4 @@
-// What the host throws on an SPE's thread ends the run, not the process.
+// An exception of the host on an SPE's thread ends the run, not the process.
 
 #include <string>
 
@@ -17,7 +17,7 @@ TEST(HostFailure, EndsTheRunAndNotTheProcess) {
   const EntryArguments one_job{.argp = 1};
   dma::AddressSpace memory;
   SpeGroup group(memory, {.spes = 1});
-  // Where a job begins, the engine keeps its caller's variables.
+  // When a job begins, the engine saves its caller's variables, and this allocation fails.
   test::refuse_allocations_from(image.sizes.bss);
   group.start_resident(0, image, one_job);
   const RunResult result = group.wait(0);

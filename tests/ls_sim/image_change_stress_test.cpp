@@ -1,7 +1,7 @@
-// Code that has just arrived is what runs: images change as fast as six SPEs can change them, in every way
-// that code can come into a local store, while the host moves their threads from processor to processor.
+// SPEs execute the code that has just arrived: six SPEs change images as fast as they can, in every way in which code
+// can come into a local store, while the host moves their threads from processor to processor.
 //
-// SOFTCELL_STRESS_CHANGES says how often in each way; without it the test takes some seconds.
+// SOFTCELL_STRESS_CHANGES is the number of changes in each way; without it the test takes some seconds.
 
 #include <dirent.h>
 #include <gtest/gtest.h>
@@ -29,7 +29,7 @@ namespace {
 
 constexpr int kSpes = 6;
 
-/// In each way, by all SPEs together.
+/// The number of changes in each way, by all SPEs together.
 std::uint32_t changes(std::uint32_t usual) {
   if (const char* const asked = std::getenv("SOFTCELL_STRESS_CHANGES")) {
     return static_cast<std::uint32_t>(std::strtoul(asked, nullptr, 10));
@@ -37,7 +37,7 @@ std::uint32_t changes(std::uint32_t usual) {
   return kSlowBuild ? usual / 20 : usual;
 }
 
-/// Moves all threads of the process from processor to processor for as long as it lives.
+/// Moves all threads of the process from processor to processor while this object lives.
 class Migrations {
  public:
   Migrations() : thread_([this] { run(); }) {}
@@ -56,7 +56,7 @@ class Migrations {
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
   }
-  /// To one of the processors that the process may use.
+  /// Moves a thread to one of the processors that the process may use.
   void pin(pid_t task, unsigned int number) {
     const auto allowed = static_cast<unsigned int>(CPU_COUNT(&everywhere_));
     unsigned int left = number % allowed;
@@ -125,7 +125,7 @@ class ImageChanges : public testing::Test {
     return post;
   }
 
-  /// Runs `changes_images` on all SPEs. @param arrange  fills in what is different on each.
+  /// Runs `changes_images` on all SPEs. @param arrange  returns the parameters of an SPE
   template <class Arrange>
   void run_residents(const SpeOptions& options, Arrange arrange) {
     const KernelImage resident = test_image("changes_images");
@@ -137,7 +137,7 @@ class ImageChanges : public testing::Test {
     }
     {
       const Migrations migrations;
-      // Of a pair, the one that is put to comes first: it is loaded before anything is put there.
+      // In each pair the SPE that receives the puts starts first, so it is loaded before the other puts anything there.
       for (const int spe : {1, 3, 5, 0, 2, 4}) {
         group.start_resident(
             spe, resident,
@@ -191,7 +191,7 @@ TEST_F(ImageChanges, ByPutsOfAnotherSpeRunWhatHasArrived) {
   });
 }
 
-// The PPU loads a program, the SPE runs it, another takes its place; then the PPU writes the code itself.
+// The PPU loads a program, the SPE runs it, and the PPU loads another program in its place.
 TEST_F(ImageChanges, ByLoadingRunWhatHasBeenLoaded) {
   SpeGroup group(memory_, {.spes = kSpes});
   const Migrations migrations;
@@ -217,7 +217,7 @@ TEST_F(ImageChanges, ByWritesOfThePpuRunWhatWasWritten) {
   SpeGroup group(memory_, {.spes = kSpes});
   const Migrations migrations;
   const std::uint32_t rounds = changes(12'000) / kSpes;
-  // All have one size and are entered at one place, or the arguments of a run would not fit what is written.
+  // The images must have the same entry: a run is prepared for the first image and executes another one.
   for (const KernelImage& image : images_) ASSERT_EQ(image.entry, images_[0].entry);
   for (std::uint32_t round = 0; round < rounds; ++round) {
     const std::uint32_t input = round % stress::kInputs, written = (round + 1) % stress::kImages;

@@ -1,5 +1,5 @@
 #pragma once
-// What holds for every image that was loaded from any bytes: for the fuzzers of both kinds of images.
+// Checks what must hold for every loaded image, whatever its bytes, for the fuzzers of both kinds of images.
 
 #include <cstdlib>
 #include <span>
@@ -19,7 +19,7 @@ inline void require_within_image(const KernelImage& image, std::span<const Image
   }
 }
 
-/// It fits a local store, its sections are in order and its functions and objects within it.
+/// The image fits a local store, its sections are in order, and its functions and objects are within it.
 inline void require_sound(const KernelImage& image) {
   require(image.sizes.end <= dma::kLocalStoreBytes && image.sizes.total() <= dma::kLocalStoreBytes);
   require(image.begin + image.bytes.size() <= image.sizes.end);

@@ -47,7 +47,7 @@ T read(const Bytes& file, std::size_t offset) {
   return record;
 }
 
-/// Where the header of the section of that name lies in the file.
+/// The offset in the file of the section header with that name.
 std::size_t section_offset(const Bytes& file, const std::string& name) {
   const auto header = read<Elf32_Ehdr>(file, 0);
   const auto at = [&](std::size_t i) { return header.e_shoff + i * sizeof(Elf32_Shdr); };

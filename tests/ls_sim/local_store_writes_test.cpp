@@ -1,6 +1,6 @@
-// No byte comes to where a local store holds instructions by the host's memcpy, memmove or memset, which may
-// use string instructions: dma/local_store_bytes.h says why. This program has its own of the three, which
-// look where they write.
+// softcell never writes to the instructions in a local store by the host's memcpy, memmove or memset, which may use
+// string instructions (dma/local_store_bytes.h says why). This program has its own versions of these functions, which
+// record where they write.
 
 #include <gtest/gtest.h>
 
@@ -22,7 +22,7 @@
 #include "softcell/ls_sim/spe_group.h"
 #include "test_images.h"
 
-// Sanitizers have their own versions of the three.
+// Sanitizers have their own versions of these functions.
 #if !SC_ADDRESS_SANITIZER && !SC_THREAD_SANITIZER
 
 namespace {
@@ -48,7 +48,7 @@ void look(const void* to, std::size_t bytes) {
 
 }  // namespace
 
-// Volatile, or the compiler would make calls of themselves of them.
+// The pointers are volatile, because the compiler would otherwise turn the loops into calls of these same functions.
 extern "C" void* memmove(void* to, const void* from, std::size_t bytes) noexcept {
   look(to, bytes);
   auto* const out = static_cast<volatile char*>(to);
@@ -110,9 +110,9 @@ TEST_P(LocalStoreWrites, AreSeenWhenTheyAreByTheHostsLibrary) {
 }
 
 TEST_P(LocalStoreWrites, OfAllPathsGoByVectorStores) {
-  // A kernel that executes a sync may fetch code to anywhere: from here on no other kind of copy is made.
+  // A kernel that executes a sync may fetch code to anywhere: from here on softcell makes no other kind of copy.
   run("computes", {.argp = 1, .envp = 1});
-  // Loads, commands of 16384 bytes, lists, line commands, runs anew with data as linked.
+  // Loads, commands of 16384 bytes, lists, line commands, and repeated runs, which restore the initialised data.
   for (const char* const kernel :
        {"echo_arguments", "no_wait", "increments", "remembers", "padded", "leaves_a_stall"}) {
     for (int again = 0; again < 3; ++again) run(kernel, {.argp = data_.ea().value, .envp = 64});
@@ -127,7 +127,7 @@ TEST_P(LocalStoreWrites, OfAllPathsGoByVectorStores) {
                                   .tag = 3}));
     spe.wait_proxy(1u << 3);
   }
-  // One SPE's puts to another's local store, as a proxy command of the PPU's, and the PPU's own writes.
+  // A put from one local store to another, by a proxy command of the PPU, and the PPU's own writes.
   ASSERT_FALSE(spe.issue_proxy({.word = static_cast<std::uint32_t>(dma::MfcOpcode::put),
                                 .lsa = {0x8000},
                                 .ea = group_.problem_state(1).local_store_ea(),

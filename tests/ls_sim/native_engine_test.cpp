@@ -20,7 +20,7 @@
 namespace softcell::ls_sim {
 namespace {
 
-/// Answers every channel with 0 and notes the arithmetic mode in which it was called.
+/// Answers every channel with 0 and records the arithmetic mode in which it was called.
 class RecordingPort final : public ChannelPort {
  public:
   ChannelReply read(std::uint32_t) override { return note(); }
@@ -99,7 +99,7 @@ TEST_F(NativeEngineTest, PassesCommandsThroughTheChannelsOfTheMfc) {
   EXPECT_LT(first.lsa.value, dma::kLocalStoreBytes);
 }
 
-/// Notes every access with the place of its instruction.
+/// Records every access with the source line of its instruction.
 class RecordingObserver final : public AccessObserver {
  public:
   explicit RecordingObserver(const KernelImage& image) : lines_(image) {}
@@ -156,7 +156,7 @@ TEST_F(NativeEngineTest, RestoresTheHostsArithmeticInEveryCallAndAfterwards) {
   EXPECT_EQ(_mm_getcsr() & ~_MM_EXCEPT_MASK, host);
 }
 
-/// The host's code takes it for clear, and copied over what is in front of its own buffers.
+/// The host's code expects a clear direction flag. With a set one it overwrote the bytes before its own buffers.
 TEST_F(NativeEngineTest, AKernelCannotTurnTheHostsStringInstructionsRound) {
   constexpr std::uint64_t kDirectionFlag = 0x400;
   image_ = test_image("computes");
@@ -178,7 +178,7 @@ TEST_F(NativeEngineTest, RestoresTheHostsArithmeticAfterAFault) {
   EXPECT_EQ(_mm_getcsr() & ~_MM_EXCEPT_MASK, host);
 }
 
-/// Raises SIGILL once in the thread that made it, as a processor does that runs what is no longer there.
+/// Raises SIGILL once in the thread that created it, like a processor that executes code that is no longer there.
 class SpuriousFault {
  public:
   explicit SpuriousFault(std::chrono::nanoseconds after) {
@@ -255,7 +255,7 @@ TEST_P(NativeEngineFaults, AreTypedAndTheEngineLives) {
 INSTANTIATE_TEST_SUITE_P(
     Each, NativeEngineFaults,
     testing::Values(
-        // Past the declared stack but not past the arena, past everything, and by one frame.
+        // Three overflows: past the declared stack but not past the arena, past everything, and by one large frame.
         FaultCase{"stack_overflow_deep", {.envp = 12}, dma::Rule::kStackOverflow, "2048 bytes"},
         FaultCase{"stack_overflow_deep", {.envp = 100}, dma::Rule::kStackOverflow, "2048 bytes"},
         FaultCase{"stack_overflow_deep", {.envp = 100'000'000}, dma::Rule::kStackOverflow, "2048 bytes"},
@@ -269,7 +269,7 @@ INSTANTIATE_TEST_SUITE_P(
                   "0xC0000000"},
         FaultCase{"read_effective_address", {.argp = 0}, dma::Rule::kOutsideLocalStore, "0x00000"},
         FaultCase{"read_effective_address",
-                  {.argp = 0xEA00'0000'0000'0000},  // of which a pointer keeps 32 bits
+                  {.argp = 0xEA00'0000'0000'0000},  // a pointer keeps only the low 32 bits
                   dma::Rule::kOutsideLocalStore,
                   "address 0x00000,"},
         FaultCase{"outside_local_store", {.envp = 256 * 1024}, dma::Rule::kOutsideLocalStore, "past the end"},

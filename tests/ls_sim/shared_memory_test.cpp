@@ -1,4 +1,4 @@
-// Kernels that share memory by reservations: nothing may be lost, whatever the schedule and the interleaving.
+// Kernels that share memory by reservations: no change may be lost, whatever the schedule and the interleaving.
 
 #include <gtest/gtest.h>
 
@@ -125,7 +125,7 @@ TEST(SharedCounter, SixSpesAndThePpuCountToAMillion) {
 
 // ---- turns
 
-/// What six SPEs that fight for one counter have done.
+/// Runs six SPEs that increment one counter. @return  the number of failed putllc of each
 std::vector<std::uint64_t> fight(const std::string& schedule) {
   dma::AddressSpace memory;
   const dma::Buffer<Line> line(memory, "line", 1);

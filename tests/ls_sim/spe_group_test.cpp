@@ -29,7 +29,7 @@
 
 namespace softcell::ls_sim {
 
-/// In the names of tests.
+/// For the names of tests.
 void PrintTo(Interleaving interleaving, std::ostream* out) {
   *out << (interleaving == Interleaving::kFree ? "free" : "turns");
 }
@@ -39,15 +39,15 @@ namespace {
 using namespace std::chrono_literals;
 using Clock_ = std::chrono::steady_clock;
 
-// What the kernel `waits` takes as argp, as in the SDK.
+// Channels that the kernel `waits` takes as argp, numbered as in the SDK.
 constexpr std::uint64_t kEventStat = 0, kSignal1 = 3, kSignal2 = 4, kDecrementer = 8, kOutMbox = 28,
                         kInMbox = 29, kOutIntrMbox = 30;
 
 constexpr std::uint64_t kInMboxEvent = 0x10, kDecrementerEvent = 0x20, kOutMboxEvent = 0x80,
                         kSignal2Event = 0x100, kLostReservationEvent = 0x400;
 
-/// Lets the process make so many threads more, as long as this lives: their stacks are made large, and the
-/// address space has room for these only.
+/// Limits the number of threads that the process can still create, while this object lives: new stacks are large, and
+/// the address space has room for so many only.
 class RoomForThreads {
  public:
   explicit RoomForThreads(std::uint64_t threads) {
@@ -83,8 +83,8 @@ class RoomForThreads {
 
 class SpeGroupTest : public testing::Test {
  protected:
-  /// Expects that each of the waits, one for each SPE, ends with the fault deadlock, soon and with `parts` in
-  /// its message.
+  /// Expects that each of the waits, one for each SPE, soon ends with the fault deadlock, with `parts` in its
+  /// message.
   void expect_deadlock(SpeGroup& group, const std::vector<EntryArguments>& waits,
                        const std::vector<std::string>& parts) {
     const auto begin = Clock_::now();
@@ -228,7 +228,7 @@ TEST_F(SpeGroupTest, SpesThatSleepLeaveTheProcessorToOthers) {
     clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
     return std::chrono::seconds(time.tv_sec) + std::chrono::nanoseconds(time.tv_nsec);
   };
-  std::this_thread::sleep_for(50ms);  // they look for a while before they sleep
+  std::this_thread::sleep_for(50ms);  // SPEs poll for a while before they sleep
   const auto before = processor_time();
   std::this_thread::sleep_for(200ms);
   EXPECT_LT(processor_time() - before, 20ms);
@@ -286,7 +286,7 @@ TEST_F(SpeGroupTest, HoursOfSimulatedTimePassAtOnce) {
 
 class SimulatedSleep : public SpeGroupTest, public testing::WithParamInterface<Interleaving> {
  protected:
-  /// The status of SPE 0 of the kernel `sleeps`, where the other one sleeps that many ticks and then signals.
+  /// Runs the kernel `sleeps` on two SPEs; SPE 1 sleeps `others_ticks` and then signals. @return  the result of SPE 0
   RunResult sleep_beside(std::uint64_t own_ticks, std::uint64_t others_ticks) {
     const KernelImage image = test_image("sleeps");
     SpeGroup group(memory_,
@@ -301,7 +301,7 @@ class SimulatedSleep : public SpeGroupTest, public testing::WithParamInterface<I
 };
 
 TEST_P(SimulatedSleep, PassesForAllWhoSleep) {
-  for (const std::uint64_t longer : {100u, 101u, 150u}) {  // the same time as well: a tie
+  for (const std::uint64_t longer : {100u, 101u, 150u}) {  // 100: both sleep for the same time
     const RunResult result = sleep_beside(100, longer);
     ASSERT_FALSE(result.fault) << result.fault->message();
     EXPECT_LE(result.status(), 2u) << longer;
@@ -311,7 +311,7 @@ TEST_P(SimulatedSleep, PassesForAllWhoSleep) {
 TEST_P(SimulatedSleep, CountsForOneThatIsWokenBySomethingElse) {
   const RunResult result = sleep_beside(0, 1500);
   ASSERT_FALSE(result.fault) << result.fault->message();
-  // Where runs are free, the other may have slept before this one began to count.
+  // If the SPEs do not take turns, the other may have slept before this one began to count.
   if (GetParam() == Interleaving::kTurns) {
     EXPECT_GE(result.status(), 140u);
   }
@@ -339,7 +339,7 @@ TEST_F(SpeGroupTest, EveryChannelThatWaitsIsNamed) {
       {{.argp = kOutIntrMbox, .envp = 2}, "write SPU_WrOutIntrMbox"},
       {{.argp = kEventStat, .envp = kLostReservationEvent}, "read SPU_RdEventStat"},
       {{.argp = kEventStat, .envp = kOutMboxEvent}, "read SPU_RdEventStat"},
-      // In the mask, but the decrementer was never started.
+      // The event is in the mask, but the decrementer was never started.
       {{.argp = kEventStat, .envp = kDecrementerEvent}, "read SPU_RdEventStat"}};
   for (const auto& [arguments, part] : cases) {
     SpeGroup group(memory_, {.spes = 1});
@@ -439,7 +439,7 @@ TEST_F(SpeGroupTest, SignalsGoRoundBetweenSpes) {
 }
 
 TEST_F(SpeGroupTest, TheProxyQueueMovesWhileTheSpeSleeps) {
-  // A put of the PPU side into the SPE's own mailbox: it must arrive though nobody asks for its tag.
+  // A put of the PPU side into the SPE's own mailbox must arrive although nobody waits for its tag.
   for (const char* schedule : {"eager", "lazy", "random:3"}) {
     SpeGroup group(memory_, {.spes = 1, .schedule = dma::parse_schedule(schedule)});
     ProblemState& spe = group.problem_state(0);
@@ -542,7 +542,7 @@ TEST_F(SpeGroupTest, LeavesNobodyBehind) {
     group.start(0, endless, {});
     group.start(1, endless, {.envp = 1});
     group.start(2, waits_, {.argp = kInMbox});
-  }  // each of them is stopped
+  }  // the destructor stops each of them
   SpeGroup again(memory_, {.spes = 3});
   EXPECT_EQ(again.spes(), 3);
 }

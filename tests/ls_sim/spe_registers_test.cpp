@@ -17,7 +17,7 @@ namespace {
 TEST(MailboxTest, GivesWordsInTheOrderInWhichTheyCame) {
   Mailbox<4> mailbox;
   EXPECT_EQ(mailbox.read(), std::nullopt);
-  for (std::uint32_t round = 0; round < 3; ++round) {  // past the end of its storage
+  for (std::uint32_t round = 0; round < 3; ++round) {  // beyond the end of its ring of words
     for (std::uint32_t i = 0; i < 3; ++i) mailbox.write(10 * round + i);
     EXPECT_EQ(mailbox.count(), 3u);
     EXPECT_EQ(mailbox.free_slots(), 1u);
@@ -78,7 +78,7 @@ TEST(EventFacilityTest, ReadingTakesTheCountAndNotTheEvent) {
   EXPECT_EQ(events.read(), event::kInMbox);
   EXPECT_EQ(events.count(), 0u);
   EXPECT_EQ(events.read(), std::nullopt);
-  events.raise(event::kInMbox);  // the next edge is news again
+  events.raise(event::kInMbox);  // the next edge is a new event
   EXPECT_EQ(events.read(), event::kInMbox);
 }
 

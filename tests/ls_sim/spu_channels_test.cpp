@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::uint32_t number(Channel channel) { return static_cast<std::uint32_t>(channel); }
 
-/// Nothing runs: the tests speak for the kernel.
+/// Runs nothing: the tests act as the kernel.
 class NoEngine final : public Engine {
  public:
   void load(const KernelImage&) override {}
@@ -31,7 +31,7 @@ class NoEngine final : public Engine {
   std::uint32_t stack_high_water() const override { return 0; }
 };
 
-/// A PPU that does nothing but wait, as long as this lives.
+/// A thread of the PPU side that only waits, while this object lives.
 class WaitingPpu {
  public:
   explicit WaitingPpu(SpeMonitor& monitor) : monitor_(monitor), thread_([this] { wait(); }) {
@@ -61,7 +61,7 @@ class WaitingPpu {
   std::jthread thread_;
 };
 
-/// One SPE that nobody else ever writes to, so that every sleep is a deadlock at once.
+/// One SPE to which nobody else writes, so that every sleep is a deadlock at once.
 class SpuChannelsTest : public testing::Test {
  protected:
   explicit SpuChannelsTest(dma::Schedule schedule = {})
@@ -79,7 +79,7 @@ class SpuChannelsTest : public testing::Test {
     return reply.fault ? reply.fault->rule : dma::Rule{};
   }
 
-  /// Six channel writes, as a kernel's.
+  /// Issues a command by six channel writes, as a kernel does.
   void command(std::uint32_t opcode, std::uint32_t lsa, dma::EffectiveAddress ea, std::uint32_t size,
                std::uint32_t tag) {
     write(Channel::kMfcLsa, lsa);
@@ -90,10 +90,10 @@ class SpuChannelsTest : public testing::Test {
     write(Channel::kMfcCmd, opcode);
   }
 
-  /// What a list command has in MFC_EAH and MFC_EAL: the half that its elements share, and where it lies.
+  /// MFC_EAH and MFC_EAL of a list command: the high half that its elements share, and the list's local-store address.
   dma::EffectiveAddress list_at(std::uint32_t lsa) const { return {(lines_.ea().value >> 32 << 32) | lsa}; }
 
-  /// Has the event in the mask and waits for it.
+  /// Puts the event into the mask and waits for it.
   std::uint32_t wait_for(std::uint32_t event) {
     write(Channel::kSpuWrEventMask, event);
     return read(Channel::kSpuRdEventStat);
@@ -394,7 +394,7 @@ TEST_F(LazySpuChannels, WhatCanMoveHasMovedBeforeTheSpuSleeps) {
 }
 
 TEST_F(LazySpuChannels, ATransferOfItsOwnMayEndTheWait) {
-  // A list whose element faults: the SPU that would sleep is told instead.
+  // An element of the list faults. The SPU, which would sleep, gets the fault instead.
   const std::array<std::uint32_t, 2> list{0x0000'0080, 0x0000'0000};
   std::memcpy(&local_store_[0x2000], list.data(), sizeof list);
   command(0x44, 0x1000, list_at(0x2000), sizeof list, 5);

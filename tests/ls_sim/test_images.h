@@ -1,5 +1,5 @@
 #pragma once
-// The test kernels, by name; their checked flavours by that name and "_checked".
+// The test kernels by name; their checked images have that name and "_checked".
 
 #include <cstddef>
 #include <span>

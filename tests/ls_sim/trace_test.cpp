@@ -22,7 +22,7 @@ namespace {
 
 using nlohmann::json;
 
-/// A file of its own in the temporary folder, removed with it.
+/// A file in the temporary folder, which is removed with this object.
 class ScratchFile {
  public:
   ScratchFile()
@@ -182,7 +182,7 @@ TEST(Trace, DrawsACommandThatNeverCompletesToTheEndOfItsJob) {
   spe.on_issue(1, get(0x1000, 16, 3), 16);
   const TraceTime end = trace_now() + 5'000'000;
   spe.on_job(saxpy(), 0, trace_now(), end, true);
-  spe.on_complete(1);  // too late: its job is over
+  spe.on_complete(1);  // too late: its job has ended
   const json file = written(trace);
   const json command = events(file, "dma").at(0), job = events(file, "job").at(0);
   EXPECT_EQ(command["args"]["completed"], false);
