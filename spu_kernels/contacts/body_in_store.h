@@ -1,7 +1,7 @@
 #pragma once
 // A body of a task in the local store: its cells, and the distances from its surface at rest.
 //
-// What is used in several places is not inlined: the checked flavour of the kernel has hardly room for its code.
+// Functions that are used in several places are not inlined: the checked image of the kernel has hardly room for its code.
 
 #include <spu_intrinsics.h>
 #include <stdint.h>
@@ -27,12 +27,12 @@ struct BodyInStore {
   const vec_float4* groups;  // four quadwords each
   const vec_float4* boxes;   // six quadwords for four cells
   const vec_float4* ends;
-  const vec_float4* begins;  // and the roots of inverse masses
+  const vec_float4* begins;  // x y z, and the roots of inverse masses
   uint32_t cell_count, particle_count;
   float spacing;
 };
 
-/// The distance in cells and its derivatives by s, trilinear between the nodes of an eighth of the cell.
+/// The distance in cells and its derivatives by s, interpolated trilinearly between the nodes of an eighth of the cell.
 /// @param s  -1/2..1/2; x y z
 /// @return   d/ds1, d/ds2, d/ds3, and the distance
 __attribute__((noinline)) inline vec_float4 field_at(const float* field, vec_float4 s) {
@@ -45,7 +45,7 @@ __attribute__((noinline)) inline vec_float4 field_at(const float* field, vec_flo
   const vec_float4 high = {node[1], node[4], node[10], node[13]};
   const vec_float4 by_x = spu_sub(high, low);
   const vec_float4 at_x = spu_madd(splat_lane<0>(f), by_x, low);
-  // Over y, then z: of the distances and of their slopes along x.
+  // Interpolates over y, then z: the distances and their slopes along x.
   const vec_uchar16 y_low = {0, 1, 2, 3, 8, 9, 10, 11, 16, 17, 18, 19, 24, 25, 26, 27};
   const vec_uchar16 y_high = {4, 5, 6, 7, 12, 13, 14, 15, 20, 21, 22, 23, 28, 29, 30, 31};
   const vec_float4 low_y = spu_shuffle(at_x, by_x, y_low);  // d z0, d z1, dx z0, dx z1

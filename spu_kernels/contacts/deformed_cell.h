@@ -1,5 +1,5 @@
 #pragma once
-// A deformed cell: where places in it are, and in which place a point is.
+// A deformed cell: maps a place in the cell to the world, and a point of the world to its place in the cell.
 //
 // With s = xi - 1/2 and the cell's middle c, x(s) = c + e1 s1 + e2 s2 + e3 s3 + xy s1 s2 + yz s2 s3 + zx s3 s1 + xyz s1 s2 s3.
 
@@ -35,18 +35,18 @@ inline DeformedCell deformed_cell(vec_ushort8 corner, const vec_float4* position
           spu_mul(spu_sub(x_high, x_low), half),    spu_sub(xy_high, xy_low)};
 }
 
-/// The inverse of a cell's mean deformation, and how far places in the cell differ from what it says.
+/// The inverse of a cell's mean deformation, with bounds for its error in the cell.
 struct RoughInverse {
   vec_float4 row1, row2, row3;  // x y z and anything
   vec_float4 middle;
-  vec_float4 reach;  // by s1 s2 s3: |s| of what may be in the cell is no more
+  vec_float4 reach;  // by s1 s2 s3: the largest |s| of points that may be in the cell
   vec_float4 least;  // of the field, as FindCell
   vec_float4
-      limit;  // of what least says, where the field may be near 0; huge below 0: nothing is in the cell
+      limit;  // largest value of `least` at which the field may be near 0; -1e30: nothing is in the cell
 };
 
 /// @param least_volume  m^3: a flatter cell, or one turned inside out, holds nothing
-/// @param near          what of the field is near, in cells
+/// @param near          largest distance that counts as near, in cells
 inline RoughInverse rough_inverse(const DeformedCell& cell, vec_float4 least, float least_volume,
                                   float near) {
   const vec_float4 c1 = cross_of(cell.e2, cell.e3), c2 = cross_of(cell.e3, cell.e1);
@@ -74,7 +74,7 @@ inline RoughInverse rough_inverse(const DeformedCell& cell, vec_float4 least, fl
 
 inline Vector3x4 in_all_lanes(vec_float4 v) { return {splat_lane<0>(v), splat_lane<1>(v), splat_lane<2>(v)}; }
 
-/// Its components in all lanes: for many points at one cell.
+/// A RoughInverse with each component in all lanes, to look up many points in one cell.
 struct RoughInverse4 {
   Vector3x4 row1, row2, row3, middle, reach, least;
   vec_float4 least_at_middle, limit;
@@ -87,21 +87,21 @@ inline RoughInverse4 in_all_lanes(const RoughInverse& inverse) {
           splat_lane<3>(inverse.least), inverse.limit};
 }
 
-/// Where four points would be in the cell if it were a parallelepiped.
+/// The places that four points would have in the cell if it were a parallelepiped.
 inline Vector3x4 rough_place(const RoughInverse4& inverse, const Vector3x4& point) {
   const Vector3x4 d = difference(point, inverse.middle);
   return {dot(inverse.row1, d), dot(inverse.row2, d), dot(inverse.row3, d)};
 }
 
-/// No more than the field at four places, in cells. A body that is stretched to twice its length has half the
-/// slope: so much of an allowance counts.
+/// A lower bound of the field at four places, in cells. In a body that is stretched to twice its length the field has half
+/// the slope, so half of an allowance counts.
 inline vec_float4 least_field(const Vector3x4& least, vec_float4 at_middle, const Vector3x4& s,
                               vec_float4 allowance_in_cells) {
   const vec_float4 below = spu_madd(least.x, s.x, spu_madd(least.y, s.y, spu_madd(least.z, s.z, at_middle)));
   return spu_madd(allowance_in_cells, spu_splats(0.5f), below);
 }
 
-/// Words whose top bit is set in lanes that cannot be in the cell, or are too far outside of the surface.
+/// Words whose top bit is set for points that cannot be in the cell, or are too far outside of the surface.
 inline vec_uint4 surely_elsewhere(const RoughInverse4& inverse, const Vector3x4& s,
                                   vec_float4 allowance_in_cells) {
   const vec_uint4 beyond =
@@ -121,12 +121,12 @@ inline CellMap in_all_lanes(const DeformedCell& cell) {
           in_all_lanes(cell.xy), in_all_lanes(cell.yz), in_all_lanes(cell.zx), in_all_lanes(cell.xyz)};
 }
 
-/// Four places of a cell: where they are, and the columns of dx/ds there.
+/// Four places of a cell: their positions in the world, and the columns of dx/ds there.
 struct MappedPoints {
   Vector3x4 position, f1, f2, f3;
 };
 
-/// One component of four places, and of the columns.
+/// One component of the positions and columns of four places.
 struct MappedComponent {
   vec_float4 position, f1, f2, f3;
 };
@@ -151,18 +151,18 @@ inline MappedPoints map_points(const CellMap& m, const Vector3x4& s) {
   return {{x.position, y.position, z.position}, {x.f1, y.f1, z.f1}, {x.f2, y.f2, z.f2}, {x.f3, y.f3, z.f3}};
 }
 
-/// Where four points are in a cell, by Newton's iteration.
+/// The places of four points in a cell, found by Newton's iteration.
 struct FoundPlaces {
   Vector3x4 s;
   MappedPoints map;     // at the last but one iterate
   vec_uint4 elsewhere;  // top bit set: not in this cell, or outside of the surface for sure
 };
 
-/// What is near in cells of any shape; exact distances are taken later.
+/// The distance that counts as near in cells of any shape; exact distances are computed later.
 constexpr float kNearInField = 0x1.99999ap-5f;  // 0.05
 
 /// @param least      of the cell, as FindCell
-/// @param elsewhere  words whose top bit is set where nobody asks
+/// @param elsewhere  words whose top bit is set in lanes that are not needed
 inline FoundPlaces find_places(const CellMap& cell, vec_float4 least, const Vector3x4& point, Vector3x4 s,
                                vec_float4 allowance_in_cells, vec_uint4 elsewhere, float least_volume) {
   constexpr int kIterations = 3;
@@ -180,7 +180,7 @@ inline FoundPlaces find_places(const CellMap& cell, vec_float4 least, const Vect
     s.x = spu_madd(dot(c1, d), by, s.x);
     s.y = spu_madd(dot(cross(map.f3, map.f1), d), by, s.y);
     s.z = spu_madd(dot(cross(map.f1, map.f2), d), by, s.z);
-    // One step is right to the square of the bend. Many points need no other.
+    // The error after one step is of second order in the cell's bend. Many points need no other step.
     const vec_float4 reach = spu_splats(i == 0 ? 0x1.333334p-1f : 0.501f);               // 0.6
     const vec_float4 limit = i == 0 ? spu_add(near, spu_splats(0x1.99999ap-5f)) : near;  // 0.05
     elsewhere = spu_or(spu_or(elsewhere, less(reach, absolute(s.x))),

@@ -1,6 +1,6 @@
 #pragma once
-// A contact of a point of one body with the surface of another: how deep it is by the distance field at rest,
-// and what is held on to on both sides.  [FL01], [MZS+11]
+// A contact of a point of one body with the surface of another: its depth by the distance field at rest, and the
+// particles that hold it on both sides.  [FL01], [MZS+11]
 
 #include <spu_intrinsics.h>
 #include <stdint.h>
@@ -14,14 +14,14 @@
 
 namespace softcell::spu {
 
-/// 1 / sqrt(x) for normal x > 0, to a unit in the last place or two.
+/// 1 / sqrt(x) for normal x > 0, with an error of a unit in the last place or two.
 inline vec_float4 exact_reciprocal_sqrt(vec_float4 x) {
   const vec_float4 y = reciprocal_sqrt(x);
   const vec_float4 half = spu_mul(spu_mul(x, y), spu_splats(0.5f));
   return spu_madd(y, spu_nmsub(half, y, spu_splats(0.5f)), y);
 }
 
-/// Shares times roots of inverse masses.
+/// An anchor whose weights are shares times roots of inverse masses.
 inline Anchor anchor_of(vec_ushort8 corner, const Shares& shares, const vec_float4* begins) {
   const auto root = [&](int k) __attribute__((always_inline)) {
     return spu_extract(begins[spu_extract(corner, k)], 3);
@@ -30,13 +30,13 @@ inline Anchor anchor_of(vec_ushort8 corner, const Shares& shares, const vec_floa
   return {corner, {spu_mul(shares.low, low), spu_mul(shares.high, high)}};
 }
 
-/// What does not change within a task.
+/// Numbers that do not change within a task.
 struct TaskTerms {
   float step, inverse_step, friction;
-  float slop_base;  ///< metres: the spacing by which depths are measured
+  float slop_base;  ///< metres: the spacing that is the unit of depths
 };
 
-/// What is known of a point in another body's cell.
+/// A point of one body in a cell of another one.
 struct PointInCell {
   uint32_t cell_of_point, cell;
   vec_float4 s_of_point, s;  // x y z 0
@@ -45,7 +45,7 @@ struct PointInCell {
   float allowance;
 };
 
-/// The inverse of dx/ds at a place of a cell: each row times the determinant, and what that is the inverse of.
+/// The inverse of dx/ds at a place of a cell: its rows times the determinant, and the inverse of the determinant.
 struct InverseThere {
   vec_float4 c1, c2, c3, by_volume;
 
@@ -55,7 +55,7 @@ struct InverseThere {
         c3(cross_of(point.f1, point.f2)),
         by_volume(reciprocal(dot_in_all_lanes(point.f1, c1))) {}
 
-  /// What a vector is in the cell, before it is divided by the determinant. The fourth lane is c3's.
+  /// Transforms a vector into the cell, without the division by the determinant. The fourth lane is that of c3.
   vec_float4 times_volume(vec_float4 v) const {
     const vec_float4 along1 = dot_in_all_lanes(c1, v), along2 = dot_in_all_lanes(c2, v);
     const vec_float4 along3 = dot_in_all_lanes(c3, v);
@@ -63,7 +63,7 @@ struct InverseThere {
     return spu_shuffle(interleave_low(along1, along2), along3, two_and_one);
   }
 
-  /// The gradient in the world of what has one in the cell; x y z 0.
+  /// Transforms a gradient from the cell to the world; x y z 0.
   vec_float4 gradient(vec_float4 by_s) const {
     const vec_float4 sum = spu_madd(splat_lane<0>(by_s), c1,
                                     spu_madd(splat_lane<1>(by_s), c2, spu_mul(splat_lane<2>(by_s), c3)));
@@ -71,14 +71,14 @@ struct InverseThere {
   }
 };
 
-/// Whether the cosine of the angle between two vectors is above 1/2, of which one lane tells.
+/// Whether the cosine of the angle between two vectors is above 1/2; reads the first lane.
 /// @param product  their dot product  @param squares  |a|^2 |b|^2
 inline bool are_alike(vec_float4 product, vec_float4 squares) {
   const vec_float4 signed_square = spu_mul(product, absolute(product));
   return spu_extract(spu_cmpgt(signed_square, spu_mul(squares, spu_splats(0.25f))), 0) != 0;
 }
 
-/// The field of the face by which a deep point has come in; `nearest`, the field where it is, if that is as good.
+/// The field of the face by which a deep point has come in; or `nearest`, the field at the point, if that has nearly the same direction.
 inline vec_float4 field_of_entered_face(const BodyInStore& mine, const BodyInStore& other,
                                         const PointInCell& point, const InverseThere& inverse, vec_float4 s,
                                         vec_float4 nearest) {
@@ -99,9 +99,9 @@ inline vec_float4 field_of_entered_face(const BodyInStore& mine, const BodyInSto
   return is_same ? nearest : field;
 }
 
-/// @param mine   the point's body, @param other  whose cell it is in
-/// @param swap   the contact is to be as seen from `other`
-/// @return       whether it is one
+/// @param mine   the point's body  @param other  the body in whose cell the point is
+/// @param swap   makes the contact as seen from `other`
+/// @return       false: there is no contact
 inline bool make_contact(const BodyInStore& mine, const BodyInStore& other, const PointInCell& point,
                          bool swap, const TaskTerms& task, SolvedContact& contact) {
   const CellAtRest& there = other.cells[point.cell];
@@ -122,8 +122,8 @@ inline bool make_contact(const BodyInStore& mine, const BodyInStore& other, cons
   const vec_ushort8 own_corner = mine.cells[point.cell_of_point].corner;
   const Shares own = shares_at(point.s_of_point);
   const vec_float4 own_begin = value_of(own_corner, own, mine.begins);
-  // The other side is held at one place with this one at the step's beginning: else impulse and reaction would
-  // turn the two bodies. What is on its way may be somewhat outside of the cell.
+  // At the step's beginning both sides are held at the same place: otherwise impulse and reaction would turn the two
+  // bodies. While the point still approaches, this place may be somewhat outside of the cell.
   const vec_float4 farthest = spu_splats(1.0f);
   vec_float4 held = s;
   for (int i = 0; i < 3; ++i) {
@@ -136,7 +136,7 @@ inline bool make_contact(const BodyInStore& mine, const BodyInStore& other, cons
   const vec_float4 their_begin = value_of(there.corner, others, other.begins);
   const vec_float4 their_end = value_of(there.corner, others, other.ends);
   const vec_float4 way = only_xyz(spu_sub(spu_sub(point.end, own_begin), spu_sub(their_end, their_begin)));
-  // The distance at the beginning, if what moves moves straight.
+  // The distance at the beginning, if both sides move along straight lines.
   const float begin = distance - spu_extract(dot_in_all_lanes(normal, way), 0);
   const float apart = begin > 0.0f ? begin : 0.0f, depth = begin < 0.0f ? -begin : 0.0f;
   const float excess = depth - kFindSlop * task.slop_base;
@@ -158,7 +158,7 @@ inline bool make_contact(const BodyInStore& mine, const BodyInStore& other, cons
   contact.a = swap ? far : near;
   contact.b = swap ? near : far;
   contact.normal = only_xyz(swap ? negative(normal) : normal);
-  // The way is that of the point against the other body; velocities change from there.
+  // `way` is the point's motion relative to the other body in this step; the solver adds changes of velocities to it.
   const vec_float4 approach = spu_mul(swap ? way : negative(way), spu_splats(task.inverse_step));
   contact.carried = with_fourth(approach, spu_splats(-apart * task.inverse_step));
   contact.terms = (vec_float4){mass, task.friction, push, 0.0f};

@@ -1,12 +1,12 @@
 #pragma once
-// By which face of another body a point has come in.
+// Finds the face of another body by which a point has come in.
 //
-// Of what is deep in a body that is pressed flat the nearest place of the surface at rest is often at its rim, as above and below there is
-// more at rest than there is now: two bodies on each other would be pushed sideways, and into each other.
+// For a point deep in a body that is pressed flat, the nearest place of the surface at rest is often at the body's rim, because the body is
+// higher at rest than it is now. By that place, two bodies on each other would be pushed sideways, and into each other.
 //
 //      a  .--------------.
 //         |       *      |      * well inside of a
-//    .----+-------o------+-.    o the face of b that the way from x to * meets: by it x goes back
+//    .----+-------o------+-.    o the face of b that the path from x to * meets: x leaves b by this face
 //    |    '-------x------' |    x a point of a
 //  b |                     |
 //    '---------------------'
@@ -20,15 +20,15 @@
 
 namespace softcell::spu {
 
-/// The place of FindCell::inner_node, -1/2..1/2 along each edge; 0.
+/// The place of FindCell::inner_node, -1/2..1/2 along each edge; x y z 0.
 inline vec_float4 place_of_node(uint32_t node) {
   const vec_int4 steps = {static_cast<int32_t>(node & 3u), static_cast<int32_t>(node >> 2 & 3u),
                           static_cast<int32_t>(node >> 4 & 3u), 1};
   return spu_msub(spu_convtf(steps, 0), spu_splats(0.5f), spu_splats(0.5f));
 }
 
-/// Well inside of a body near one of its cells, metres, at the step's end; x y z.
-/// @return  false: that is not in the local store
+/// Finds a place well inside of a body near one of its cells, metres, at the step's end; x y z.
+/// @return  false: the place is not in the local store
 inline bool inner_place(const BodyInStore& body, uint32_t cell, vec_float4& place) {
   const vec_short8 own = body.cells[cell].place;
   const uint32_t inner = static_cast<uint32_t>(spu_extract(own, 6)) & 0xFFFFu;
@@ -38,9 +38,9 @@ inline bool inner_place(const BodyInStore& body, uint32_t cell, vec_float4& plac
   return true;
 }
 
-/// The cell at a place of the lattice. What is near it there is mostly near it in the list, too.
-/// @param place  grid index x y z and 0   @param near  a cell that is near
-/// @return       cell_count: there is none
+/// Finds the cell at a place of the lattice. Cells that are near each other in the lattice are mostly near in the list, too.
+/// @param place  grid index x y z and 0   @param near  a cell near that place
+/// @return       cell_count: there is no such cell
 inline uint32_t cell_at(const BodyInStore& body, vec_int4 place, uint32_t near) {
   const vec_uchar16 halfwords = {2, 3, 6, 7, 10, 11, 14, 15, 2, 3, 6, 7, 10, 11, 14, 15};
   const vec_short8 wanted = spu_shuffle((vec_short8)place, (vec_short8)place, halfwords);
@@ -48,24 +48,24 @@ inline uint32_t cell_at(const BodyInStore& body, vec_int4 place, uint32_t near) 
     return spu_extract(spu_gather(spu_cmpeq(body.cells[cell].place, wanted)), 0) >= 0xF0u;
   };
   for (uint32_t off = 0; off < body.cell_count; ++off) {
-    const uint32_t before = near - off, behind = near + off;  // below 0 is large
+    const uint32_t before = near - off, behind = near + off;  // a number below 0 wraps around to a large one
     if (before < body.cell_count && is_it(before)) return before;
     if (behind < body.cell_count && is_it(behind)) return behind;
   }
   return body.cell_count;
 }
 
-/// In whole numbers.
+/// The largest whole numbers that are not above v.
 inline vec_int4 floor_of(vec_float4 v) {
   const vec_int4 towards_zero = spu_convts(v, 0);
   return spu_add(towards_zero, (vec_int4)spu_cmpgt(spu_convtf(towards_zero, 0), v));
 }
 
-/// The field of the face that a way through a body at rest meets, at the place where the way begins: as if the face were plane, and
-/// nothing else there. Steps are nearly as long as the surface is far: at the lattice's boundary they end within.
-/// @param s, field   of the beginning: in its cell, and as field_at() has it
+/// Follows a path through a body at rest to the face that it meets. Returns the field at the path's beginning, as if the body had only this
+/// face and the face were plane. Steps are a little shorter than the distance to the surface, so they stay within the lattice.
+/// @param s, field   of the path's beginning: its place in the cell, and the result of field_at() there
 /// @param direction  of unit length, in cells; x y z 0
-/// @return           `field` itself: the way meets nothing
+/// @return           `field` itself: the path meets no face
 inline vec_float4 field_of_face(const BodyInStore& body, uint32_t cell, vec_float4 s, vec_float4 field,
                                 vec_float4 direction) {
   constexpr int kMostSteps = 16;

@@ -1,5 +1,5 @@
 #pragma once
-// One 3-vector in a register: x y z, and a fourth lane that is 0 or belongs to somebody else.
+// One 3-vector in a register: x y z, and a fourth lane that is 0 or has another meaning.
 
 #include <spu_intrinsics.h>
 
@@ -15,14 +15,14 @@ inline vec_float4 splat_lane(vec_float4 v) {
   return spu_shuffle(v, v, pattern);
 }
 
-/// All ones where the number is below zero.
+/// All ones in lanes whose number is below zero.
 inline vec_uint4 below_zero(vec_float4 v) { return (vec_uint4)spu_rlmaska((vec_int4)v, -31); }
 
-/// The larger one of each lane's two.
+/// The larger number of each lane.
 inline vec_float4 larger(vec_float4 a, vec_float4 b) { return spu_sel(a, b, below_zero(spu_sub(a, b))); }
 inline vec_float4 smaller(vec_float4 a, vec_float4 b) { return spu_sel(b, a, below_zero(spu_sub(a, b))); }
 
-/// 0 where the number is below zero.
+/// The numbers, but 0 in lanes whose number is below zero.
 inline vec_float4 not_below_zero(vec_float4 v) { return (vec_float4)spu_andc((vec_uint4)v, below_zero(v)); }
 
 inline vec_float4 negative(vec_float4 v) {
@@ -41,7 +41,7 @@ inline vec_float4 with_fourth(vec_float4 xyz, vec_float4 fourth) {
   return spu_sel(xyz, fourth, last);
 }
 
-/// a . b in all lanes, of vectors whose fourth lanes' product is 0.
+/// a . b in all lanes. @pre the product of the fourth lanes is 0
 inline vec_float4 dot_in_all_lanes(vec_float4 a, vec_float4 b) { return sum_of_lanes(spu_mul(a, b)); }
 
 /// y z x, and the fourth lane.
@@ -50,7 +50,7 @@ inline vec_float4 turned_left(vec_float4 v) {
   return spu_shuffle(v, v, yzx);
 }
 
-/// a x b; the fourth lane is 0 but for rounding.
+/// a x b; the fourth lane is 0 except for rounding.
 inline vec_float4 cross_of(vec_float4 a, vec_float4 b) {
   return turned_left(spu_msub(a, turned_left(b), spu_mul(turned_left(a), b)));
 }

@@ -1,5 +1,5 @@
 #pragma once
-// Rigid bodies whose velocities impulses change.
+// Rigid bodies that impulses move.
 
 #include <spu_intrinsics.h>
 
@@ -8,7 +8,7 @@
 
 namespace softcell::spu {
 
-/// The first part of a SolveRigid, as registers: all there is of one that is free.
+/// The first part of a SolveRigid, as registers: all that a free rigid body has.
 struct RigidInMotion {
   vec_float4 velocity;  // x y z, and the inverse mass
   vec_float4 spin;      // x y z, and whether it is held
@@ -22,7 +22,7 @@ struct HeldRigid {
 };
 static_assert(sizeof(HeldRigid) == sizeof(SolveRigid), "the same bytes");
 
-/// How its velocity has changed at a point. @param arm  from its centre; a fourth lane of 0
+/// The change of its velocity at a point. @param arm  from its centre to the point; the fourth lane is 0
 inline vec_float4 change_at(const RigidInMotion& rigid, vec_float4 arm) {
   return spu_add(rigid.velocity, cross_of(rigid.spin, arm));
 }
@@ -40,7 +40,7 @@ inline vec_float4 minus_product(vec_float4 v, const vec_float4* columns, vec_flo
   return spu_nmsub(splat_lane<2>(by), columns[2], v);
 }
 
-/// It loses an impulse, whose fourth lane is 0.
+/// Subtracts an impulse from the rigid body's momentum. @param impulse  the fourth lane is 0
 inline void take_at(RigidInMotion& rigid, vec_float4 arm, vec_float4 impulse) {
   const vec_float4 turn = cross_of(arm, impulse);
   rigid.velocity = spu_nmsub(splat_lane<3>(rigid.velocity), impulse, rigid.velocity);

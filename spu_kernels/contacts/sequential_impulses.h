@@ -1,5 +1,5 @@
 #pragma once
-// One contact after the other: the impulses that keep bodies apart, hold them by friction, and push them out of
+// Solves one contact after the other: impulses that keep bodies apart, hold them by friction, and push them out of
 // each other.  [Cat05]
 
 #include <spu_intrinsics.h>
@@ -18,12 +18,12 @@ struct Anchor {
   vec_float4 weight[2];
 };
 
-/// What the other side of a contact is.
+/// The kind of the other side of a contact.
 enum class With { kNothingThatMoves, kSoft, kRigid };
 
 /// A SolveRigidPoint as registers.
 struct RigidPoint {
-  vec_ushort8 rigid;  // which, and zeros
+  vec_ushort8 rigid;  // its index, and zeros
   vec_float4 arm;     // x y z, and the mass of pushes
   vec_float4 feels;   // x y z, and the mass of friction
 };
@@ -79,7 +79,7 @@ inline HeldRigid& rigid_of(const RigidPoint& point, HeldRigid* rigids) {
   return rigids[spu_extract(point.rigid, 0)];
 }
 
-/// Of one contact, along its normal and against it by friction (Coulomb's law, the same in all directions).
+/// Solves one contact: the impulse along its normal, and the friction across it (Coulomb's law, the same in all directions).
 template <With kWith>
 inline void solve_velocities(SolvedContact& contact, vec_float4* a, [[maybe_unused]] vec_float4* b,
                              [[maybe_unused]] HeldRigid* rigids) {
@@ -95,7 +95,7 @@ inline void solve_velocities(SolvedContact& contact, vec_float4* a, [[maybe_unus
   const vec_float4 wanted = spu_madd(spu_sub(splat_lane<3>(contact.carried), along), mass, before);
   const vec_float4 impulse = not_below_zero(wanted);
 
-  // What slides is not changed by an impulse along the normal, but where that turns a rigid body.
+  // An impulse along the normal changes the sliding velocity only if it turns a rigid body.
   vec_float4 friction_mass = mass;
   if constexpr (kWith == With::kRigid) {
     v = spu_madd(only_xyz(contact.rigid.feels), spu_sub(impulse, before), v);
@@ -119,7 +119,7 @@ inline void solve_velocities(SolvedContact& contact, vec_float4* a, [[maybe_unus
   contact.impulse = with_fourth(friction, impulse);
 }
 
-/// Of one contact that pushes: soft bodies only.
+/// Solves the push of one contact, which moves soft bodies only.
 template <With kWith>
 inline void solve_push(SolvedContact& contact, vec_float4* a, [[maybe_unused]] vec_float4* b) {
   const vec_float4 n = contact.normal, terms = contact.terms;

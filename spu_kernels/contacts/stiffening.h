@@ -1,6 +1,6 @@
 #pragma once
-// Takes a share of what a cell's corners do against each other off their velocities, both momenta kept: what a
-// contact does to one corner the cell as a whole feels at once.
+// Removes a share of the relative motion of a cell's corners, and keeps linear and angular momentum. So the cell as a whole
+// at once feels what a contact does to one corner.
 
 #include <spu_intrinsics.h>
 #include <stdint.h>
@@ -11,15 +11,15 @@
 
 namespace softcell::spu {
 
-/// Of one cell. The rigid motion that has the corners' momenta is V + omega x r, with r in cells from the centre
-/// of mass; what differs from it shrinks. Velocities are those against the first corner.
-/// @param changes    of velocities times the root of the mass, and 0
-/// @param start      what has changed, and that root
+/// Stiffens one cell. V + omega x r, with r in cells from the centre of mass, is the rigid motion with the momentum and the angular
+/// momentum of the corners. The differences from it shrink. Velocities are relative to the first corner.
+/// @param changes    changes of velocities times the root of the mass, and 0
+/// @param start      the velocities before these changes times the root of the mass, and that root
 /// @param positions  x y z and anything, metres
 inline void stiffen(vec_ushort8 corner, vec_float4* changes, const vec_float4* start,
                     const vec_float4* positions, float share, float inverse_spacing) {
   const vec_float4 zero = spu_splats(0.0f);
-  // From the first corner: far from the origin, and of what is fast, sums would lose digits, and SPUs truncate all of them the same way.
+  // Relative to the first corner: far from the origin, or at high speed, sums would lose digits, and SPUs truncate all of them the same way.
   const uint32_t first_corner = spu_extract(corner, 0);
   const vec_float4 first = positions[first_corner];
   const vec_float4 carried = spu_mul(only_xyz(spu_add(start[first_corner], changes[first_corner])),
@@ -40,7 +40,7 @@ inline void stiffen(vec_ushort8 corner, vec_float4* changes, const vec_float4* s
   const vec_float4 centre = spu_mul(moment, by_mass);
   const vec_float4 velocity = spu_mul(momentum, by_mass);
 
-  // Inertia by rows, and spin, both by mass.
+  // Inertia by rows, and angular momentum, both divided by the mass.
   vec_float4 squares = zero, spin = zero;  // x x, y y, z z
   vec_float4 mixed = zero;                 // x y, y z, z x
   for (int k = 0; k < 8; ++k) {
@@ -52,7 +52,7 @@ inline void stiffen(vec_ushort8 corner, vec_float4* changes, const vec_float4* s
     mixed = spu_madd(weighted, turned_left(r), mixed);
     spin = spu_madd(spu_mul(root[k], by_mass), cross_of(r, now[k]), spin);
   }
-  // A cell that is pressed to a line cannot turn about it: a little is added to its inertia.
+  // A cell that is pressed to a line has no inertia about it, so a little is added.
   const vec_float4 little = spu_splats(0x1.0p-13f);
   const vec_float4 diagonal = spu_add(spu_sub(sum_of_lanes(squares), squares), little);
   const vec_float4 off = spu_sub(zero, mixed);  // of rows and columns x y, y z, z x
@@ -70,7 +70,7 @@ inline void stiffen(vec_ushort8 corner, vec_float4* changes, const vec_float4* s
         spu_madd(splat_lane<0>(s), c1, spu_madd(splat_lane<1>(s), c2, spu_mul(splat_lane<2>(s), c3))),
         by_determinant);
   };
-  // What the little has taken of the turn is given back: the spin that is left out is of second order.
+  // Restores the part of the rotation that the addition has removed; the remaining error is of second order.
   const vec_float4 omega = turn_of(spu_madd(little, turn_of(spin), spin));
 
   const vec_float4 part = spu_splats(share);
