@@ -33,6 +33,26 @@ std::size_t index_in(std::span<const std::uint32_t> ascending, std::uint32_t num
   return static_cast<std::size_t>(at - ascending.begin());
 }
 
+/// Whether attachments hold particles that are not all on one line: a rigid body held so cannot move.
+bool is_held_fast(const ContactBody& body) {
+  if (body.inverse_masses_if_held.empty()) return false;
+  constexpr float kOffLine = 0.1f;  // cells
+  std::optional<Vector3f> first, other;
+  for (std::uint32_t p = 0; p < body.positions.size(); ++p) {
+    if (!body.holds(p)) continue;
+    const Vector3f& at = body.positions[p];
+    if (!first) {
+      first = at;
+    } else if (!other) {
+      if (at != *first) other = at;
+    } else {
+      const Vector3f line = (*other - *first).normalized();
+      if (line.cross(at - *first).norm() > kOffLine * body.spacing()) return true;
+    }
+  }
+  return false;
+}
+
 /// The share of the substep until a velocity changes: until the contact's surfaces touch. A sharp contact acts at once: it only limits how
 /// far the body goes on.
 float share_until_touch(const BounceContact& contact, float step) {
@@ -105,7 +125,7 @@ Bounces::Whole Bounces::whole_of(const ContactBody& body, const Part& part, doub
   inertia.diagonal().array() += 1e-9 * inertia.trace();
   const Matrix3d inverse = inertia.inverse();
   whole.spin = inverse * spin;
-  if (!body.asleep) {
+  if (!body.asleep && !is_held_fast(body)) {
     whole.inverse_mass = 1 / mass;
     whole.inverse_inertia = inverse;
   }

@@ -31,6 +31,10 @@ constexpr float kClearSide = 0.05f;  // cells: a point nearer to a triangle may 
 // Cosines between normals: of the two sides of a thin plate, and of faces that count as one. If all triangles are like one of them, no two
 // are opposite.
 constexpr float kOpposite = -0.5f, kAlike = 0.5f;
+// A point that arrives at a face this near to an edge, in cells, may belong to the face beside it.
+constexpr float kBeside = 0.1f;
+// Sine of the angle between a contact's normal and that of the body's surface: below this they are as good as one.
+constexpr float kFaceOn = 0.1f;
 constexpr int kApartAtRest = 3;  // a point never meets cells of its own body whose middles are nearer at rest
 
 /// A point before and after the substep, in the frame of an obstacle, as if the obstacle stood still.
@@ -142,19 +146,35 @@ std::optional<Arrival> arrive(const Obstacle& obstacle, const Vector3f& from, co
 }
 
 /// For a point from outside the first place inside counts: at the end it may be nearer to the other side.
-std::optional<Hit> meet(const Obstacle& obstacle, const Way& way, float allowance, float spacing) {
-  const Vector3f along = way.to - way.from;
-  const auto arrival = arrive(obstacle, way.from, along, kNear * spacing - allowance, spacing);
-  if (!arrival) return {};
-  const auto& [share, there] = *arrival;
-  return Hit{there.normal, there.distance + allowance + (1 - share) * there.normal.dot(along)};
+Hit hit_at(const Arrival& arrival, const Way& way, float allowance) {
+  const auto& [share, there] = arrival;
+  return Hit{there.normal, there.distance + allowance + (1 - share) * there.normal.dot(way.to - way.from)};
+}
+
+/// Corrects the contact of a point that arrives at a face a little way from its edge, while its body's surface slides past the edge. Where a
+/// block slides on a soft floor, points ahead of it lie a little above its bottom: they pass below the block, and do not stop it.
+/// @param inwards  from the point into its own body, across its surface: of unit length, in the obstacle's frame
+/// @return  the contact with the face beyond the edge; none: there is no edge near, or the body runs into the face
+std::optional<Hit> hit_of_face_beside(const Obstacle& obstacle, const Way& way, const Arrival& arrival,
+                                      const Vector3f& inwards, float allowance, float spacing) {
+  const auto& [share, there] = arrival;
+  const float cosine = inwards.dot(there.normal);
+  const Vector3f aside = inwards - cosine * there.normal;
+  const float sine = aside.norm();
+  if (sine < kFaceOn) return {};
+  const Vector3f place = way.from + share * (way.to - way.from);
+  const Vector3f behind = place - (there.distance + kNear * spacing) * there.normal;
+  const Vector3f beyond = behind + kBeside * spacing / sine * aside;
+  const Separation face = separation(obstacle, beyond);
+  if (face.distance < 0 || face.normal.dot(inwards) < 0.5f * (cosine + 1)) return {};
+  return Hit{face.normal, face.distance + face.normal.dot(way.to - beyond) + allowance};
 }
 
 /// Corrects the contact of a point that has been pressed in so deep that it is nearer to another face than to the one through which it
 /// entered: to the far side of a thin shape, or to a side near an edge. It would leave through that face, and its body would get stuck
 /// there.
 /// @param inside  a place of the point's body, before the substep, in the obstacle's frame
-/// @param hit     of the point, as meet() finds it
+/// @param hit     of the point, as hit_at() finds it
 /// @return  the contact with the face that the line from inside of the body meets; none: it is the same face, or `inside` does not tell
 std::optional<Hit> hit_of_entered_face(const Obstacle& obstacle, const Way& way, const Vector3f& inside,
                                        const Hit& hit, float allowance, float spacing) {
@@ -192,8 +212,9 @@ class ObstacleContacts {
     cells_.boxes().for_each_meeting(near_, [&](std::uint32_t cell) {
       for_each_point_in(near, cell, [&](const TouchPoint& point, const Vector3f& from, const Vector3f& to) {
         const Way way = way_of(from, to);
-        const auto hit = meet(obstacle_, way, point.allowance, body_.spacing());
-        if (hit) add(point.anchor, to, turned_outwards(*hit, way, cell, point.allowance));
+        const float spacing = body_.spacing(), reach_of_point = kNear * spacing - point.allowance;
+        const auto arrival = arrive(obstacle_, way.from, way.to - way.from, reach_of_point, spacing);
+        if (arrival) add(point.anchor, to, hit_of(point, way, *arrival, cell));
       });
     });
     for (const ObstacleEdge& edge : obstacle_.edges) try_edge(edge, reach);
@@ -525,6 +546,31 @@ class ObstacleContacts {
     if (!may_have_others_beside()) return false;
     if (!along.isZero(0)) return cells_.beside.face_goes_on(corner, along);
     return body_.model->is_flat() && cells_.beside.face_goes_on(corner, Vector3f::UnitZ());
+  }
+
+  Hit hit_of(const TouchPoint& point, const Way& way, const Arrival& arrival, std::uint32_t cell) {
+    const auto beside =
+        hit_of_face_beside(obstacle_, way, arrival, inwards_of(point), point.allowance, body_.spacing());
+    if (beside) return *beside;
+    return turned_outwards(hit_at(arrival, way, point.allowance), way, cell, point.allowance);
+  }
+
+  /// From a point across the surface into its body: of unit length, in the obstacle's frame. 0: the surface is not flat there.
+  Vector3f inwards_of(const TouchPoint& point) const {
+    constexpr float kFar = 0.5f, kLeastDepth = 0.35f;  // cells
+    const ContactModel& model = *body_.model;
+    const auto low = [&](std::uint32_t cell) -> Vector3f {
+      return model.lattice().cells[cell].cast<float>();
+    };
+    const std::uint32_t cell = point.anchor.cell;
+    const Vector3f outwards = model.surface.field(cell, point.xi).gradient.stableNormalized();
+    const Vector3f place = low(cell) + point.xi - kFar * outwards;
+    const auto there = model.cell_at(place);
+    if (!there || model.surface.field(*there, place - low(*there)).distance > -kLeastDepth)
+      return Vector3f::Zero();
+    const Anchor within = anchor_in_cell(model.lattice(), *there, place - low(*there));
+    const Vector3f way = within.of(body_.positions) - point.anchor.of(body_.positions);
+    return obstacle_.rotation.transpose() * way.stableNormalized();
   }
 
   /// Changes a contact that leads to the far side of a thin shape, or through a face with another shape behind it.

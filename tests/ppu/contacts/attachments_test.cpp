@@ -463,6 +463,25 @@ TEST_P(SolvedBy, WhatIsWeldedAsAWholeStopsWhatFallsOnIt) {
   EXPECT_GT(lowest, 1.25f - 0.1f * kCell);
 }
 
+TEST_P(SolvedBy, WhatIsWeldedAsAWholeGivesBackAsAWallDoes) {
+  AttachedWorld w(GetParam());
+  const Table table(w);
+  constexpr float kRestitution = 0.8f, kHeight = 0.8f;
+  SoftBodySettings settings = stiff();
+  settings.restitution = kRestitution;
+  table.body.set_material(settings);
+  btRigidBody& ball = w.add(std::make_unique<btSphereShape>(0.1f), 20, {0, 1.25f + kHeight, 0});
+  ball.setRestitution(1);
+  const int down = static_cast<int>(60 * std::sqrt(2 * kHeight / 9.81f));
+  w.run(down + 5);
+  float highest = 0;
+  for (int frame = 0; frame < 40; ++frame) {
+    w.run(1);
+    highest = std::max(highest, height_of(ball) - 1.25f);
+  }
+  EXPECT_NEAR(highest, kRestitution * kRestitution * kHeight, 0.05f * kHeight);
+}
+
 TEST_P(SolvedBy, WhatIsWeldedAsAWholeBreaksOffUnderWhatItCannotCarry) {
   for (const bool holds : {true, false}) {
     AttachedWorld w(GetParam());

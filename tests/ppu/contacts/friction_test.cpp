@@ -120,5 +120,40 @@ TEST(Friction, PlanksSideBySideAreAsOneSlope) {
   }
 }
 
+/// A rigid block of 0.3 m that slides on a slab with a friction of 0.1.
+struct SlidingBlock {
+  ContactWorld w;
+  btRigidBody* block;
+
+  explicit SlidingBlock(float mass, SolverFactory* solvers = nullptr) : w({0, -9.81f, 0}, solvers) {
+    constexpr float kCell = 0.1f;
+    const SoftBodySettings settings = settings_of(kCell, 0.7f, 0.3f);
+    w.add_floor();
+    w.add(make_box({4, 0.3f, 1}, kCell), settings, {0, 0.15f, 0});
+    block = &w.add(std::make_unique<btBoxShape>(btVector3(0.15f, 0.15f, 0.15f)), mass, {-1.5f, 0.45f, 0},
+                   0.1f / settings.friction);
+    block->setDamping(0, 0);
+    w.run(40);
+  }
+  float speed() const { return block->getLinearVelocity().x(); }
+};
+
+/// The surface ahead of it stands a little above its bottom: what it has not pressed down yet is no step that stops it.
+TEST(Friction, ARigidBlockSlidesOnASoftSurface) {
+  SpeRuntime spes({.spes = 2});
+  for (SolverFactory* solvers : {static_cast<SolverFactory*>(nullptr), static_cast<SolverFactory*>(&spes)})
+    for (const float mass : {2.0f, 20.0f})
+      for (const float speed : {0.7f, 3.0f}) {
+        SCOPED_TRACE(mass);
+        SlidingBlock slide(mass, solvers);
+        slide.block->setLinearVelocity({speed, 0, 0});
+        slide.w.run(30);
+        // The heavy one goes on to press the slab down by a quarter of a cell.
+        const float without_dent = speed - 0.5f * 0.1f * 9.81f;
+        EXPECT_NEAR(slide.speed(), without_dent, mass < 10 ? 0.02f : 0.15f);
+        EXPECT_LT(std::abs(slide.block->getAngularVelocity().z()), 0.3f);
+      }
+}
+
 }  // namespace
 }  // namespace softcell::ppu
