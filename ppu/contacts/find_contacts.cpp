@@ -288,18 +288,47 @@ class ObstacleContacts {
     return triangle.height(near.inside);
   }
 
-  /// A mesh may be wound either way, closed around a solid or around a room: the majority of near triangles tells on which side the body
-  /// is.
-  /// @return  1 or -1, as ObstacleTriangle::meet() takes it
-  float front_of_triangles(const KnownTriangles& triangles) {
-    if (obstacle_.faces_bodies || cells_.near_triangles.empty()) return 1;
-    const float clear = kClearSide * body_.spacing();
-    int seen = 0;
+  /// 1: a point that may have been pressed through shows that the body is in front of a triangle; -1: behind it; 0: neither is clear.
+  int vote_of(const KnownTriangles& triangles, const EndCells::PointAtTriangle& near) const {
+    const float side = side_of(triangles, near), clear = kClearSide * body_.spacing();
+    return side > clear ? 1 : side < -clear ? -1 : 0;
+  }
+
+  /// Finds out on which side of near triangles the body is. A mesh may be wound either way, closed around a solid or around a room: the
+  /// majority of its triangles tells. If some contradict, each sheet is judged by itself: a wall may face away from a body on the floor.
+  void find_fronts(const KnownTriangles& triangles) {
+    if (obstacle_.faces_bodies || cells_.near_triangles.empty()) return;
+    int for_front = 0, for_back = 0;
     for (const EndCells::PointAtTriangle& near : cells_.near_triangles) {
-      const float side = side_of(triangles, near);
-      seen += side > clear ? 1 : side < -clear ? -1 : 0;
+      const int vote = vote_of(triangles, near);
+      for_front += vote > 0 ? 1 : 0;
+      for_back += vote < 0 ? 1 : 0;
     }
-    return body_.sides->side_of(rigid_.number, obstacle_.part, seen);
+    const float front = body_.sides->side_of(rigid_.number, obstacle_.part, for_front - for_back);
+    for (EndCells::PointAtTriangle& near : cells_.near_triangles) near.front = front;
+    const bool contradicted = front > 0 ? for_back > 0 : for_front > 0;
+    if (contradicted || body_.sides->knows_sheets(rigid_.number, obstacle_.part))
+      find_fronts_of_sheets(triangles);
+  }
+
+  void find_fronts_of_sheets(const KnownTriangles& triangles) {
+    cells_.sheets.find(obstacle_.triangles);
+    if (cells_.sheets.count() < 2) return;
+    std::vector<KnownSides::SheetSeen>& sheets = cells_.near_sheets;
+    sheets.clear();
+    const auto sheet_of = [&](const EndCells::PointAtTriangle& near) {
+      const std::uint32_t sheet = cells_.sheets.of(near.triangle);
+      const auto known = std::ranges::find(sheets, sheet, &KnownSides::SheetSeen::sheet);
+      return known != sheets.end() ? known : sheets.insert(known, {sheet, near.triangle, 0});
+    };
+    for (const EndCells::PointAtTriangle& near : cells_.near_triangles)
+      sheet_of(near)->seen += vote_of(triangles, near);
+    for (KnownSides::SheetSeen& sheet : sheets) {
+      const float front = body_.sides->side_of_sheet(rigid_.number, obstacle_.part, obstacle_.triangles,
+                                                     cells_.sheets, sheet);
+      for (EndCells::PointAtTriangle& near : cells_.near_triangles)
+        if (cells_.sheets.of(near.triangle) == sheet.sheet) near.front = front;
+    }
   }
 
   /// Points only meet the triangles near their motion.
@@ -309,10 +338,10 @@ class ObstacleContacts {
         come_near(widened(to_world(obstacle_, triangles.boxes().bounds()), obstacle_.rounding));
     find_origin(triangles);
     find_near_triangles(triangles);
-    const float front = front_of_triangles(triangles);
+    find_fronts(triangles);
     for (const EndCells::PointAtTriangle& at : cells_.near_triangles)
       if (const auto hit = ObstacleTriangle(obstacle_, triangles, at.triangle)
-                               .meet({at.from, at.to}, at.inside, body_.spacing(), front))
+                               .meet({at.from, at.to}, at.inside, body_.spacing(), at.front))
         add(at.point->anchor, at.point->anchor.of(body_.ends), *hit);
     try_edges_of_triangles(triangles, reach);
   }

@@ -12,6 +12,7 @@
 #include "ppu/surfaces/cell_finder.h"
 #include "ppu/surfaces/known_triangles.h"
 #include "ppu/surfaces/side_by_side.h"
+#include "ppu/surfaces/triangle_sheets.h"
 
 namespace softcell::ppu {
 
@@ -50,10 +51,13 @@ class EndCells {
     Eigen::Vector3f from, to;  ///< before and after the substep
     Eigen::Vector3f inside;    ///< a place well inside of the body near the point, before the substep
     bool is_far_side = false;  ///< on the far side of a plate; the plate's other side is nearer to the body
+    float front = 1;  ///< 1: the body is on the side from which the triangle is wound counterclockwise; or -1
   };
   // Kept for the functions that find contacts with triangles, so that they do not allocate again and again.
   std::vector<CornerSet::Point> near_corners;
   std::vector<PointAtTriangle> near_triangles;
+  TriangleSheets sheets;
+  std::vector<KnownSides::SheetSeen> near_sheets;
   Beside beside;  // for the obstacle that is being looked at
 
  private:

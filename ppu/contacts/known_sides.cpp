@@ -16,22 +16,47 @@ void KnownSides::begin_substep() {
 }
 
 float KnownSides::last_side_of(std::uint32_t rigid, std::uint32_t part) const {
-  const auto known = std::ranges::find_if(sides_, of(rigid, part));
+  const auto known = std::ranges::find_if(sides_, of_whole(rigid, part));
   return known != sides_.end() && known->side < 0 ? -1.0f : 1.0f;
 }
 
-float KnownSides::side_of(std::uint32_t rigid, std::uint32_t part, int seen) {
+void KnownSides::Side::look(int seen) {
   constexpr int kMostDoubts = 12;
-  auto known = std::ranges::find_if(sides_, of(rigid, part));
-  if (known == sides_.end()) known = sides_.insert(known, Side{rigid, part, true, 0, 0});
-  known->is_near = true;
-  const int side = seen > 0 ? 1 : seen < 0 ? -1 : 0;
-  if (side * known->side < 0)
-    ++known->doubts;
-  else if (side != 0)
-    known->doubts = 0;
-  if (side != 0 && (known->side == 0 || known->doubts > kMostDoubts)) known->side = side, known->doubts = 0;
+  is_near = true;
+  const int seems = seen > 0 ? 1 : seen < 0 ? -1 : 0;
+  if (seems * side < 0)
+    ++doubts;
+  else if (seems != 0)
+    doubts = 0;
+  if (seems != 0 && (side == 0 || doubts > kMostDoubts)) side = seems, doubts = 0;
+}
+
+float KnownSides::side_of(std::uint32_t rigid, std::uint32_t part, int seen) {
+  auto known = std::ranges::find_if(sides_, of_whole(rigid, part));
+  if (known == sides_.end()) known = sides_.insert(known, Side{rigid, part});
+  known->look(seen);
   return known->side < 0 ? -1.0f : 1.0f;
+}
+
+float KnownSides::side_of_sheet(std::uint32_t rigid, std::uint32_t part, std::span<const Triangle> triangles,
+                                const TriangleSheets& sheets, const SheetSeen& sheet) {
+  const auto has_sheet = [&](const Side& side) {
+    if (side.rigid != rigid || side.part != part || !side.sheet) return false;
+    const auto known = std::ranges::find(triangles, *side.sheet);
+    return known != triangles.end() &&
+           sheets.of(static_cast<std::size_t>(known - triangles.begin())) == sheet.sheet;
+  };
+  auto known = std::ranges::find_if(sides_, has_sheet);
+  if (known == sides_.end()) known = sides_.insert(known, Side{rigid, part});
+  known->sheet = triangles[sheet.nearest];
+  known->look(sheet.seen);
+  return known->side == 0 ? last_side_of(rigid, part) : static_cast<float>(known->side);
+}
+
+bool KnownSides::knows_sheets(std::uint32_t rigid, std::uint32_t part) const {
+  return std::ranges::any_of(sides_, [&](const Side& side) {
+    return side.rigid == rigid && side.part == part && side.sheet.has_value();
+  });
 }
 
 auto KnownSides::track(std::uint32_t rigid, std::uint32_t part) const -> std::optional<Track> {

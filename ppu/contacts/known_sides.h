@@ -2,9 +2,13 @@
 // The side of rigid triangles on which a body is, and the last place where it was on that side. It keeps its side while it is near them.
 
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
+
+#include "ppu/surfaces/triangle_sheets.h"
 
 namespace softcell::ppu {
 
@@ -21,6 +25,21 @@ class KnownSides {
   float side_of(std::uint32_t rigid, std::uint32_t part, int seen);
   /// The last answer of side_of(), or 1.
   float last_side_of(std::uint32_t rigid, std::uint32_t part) const;
+
+  using Triangle = std::array<Eigen::Vector3f, 3>;
+  /// One sheet of a part's triangles near the body.
+  struct SheetSeen {
+    std::uint32_t sheet;  ///< as `sheets` numbers them
+    std::uint32_t
+        nearest;  ///< a triangle of it by which it is found again in the next substep, when others may be near
+    int seen;     ///< as in side_of()
+  };
+  /// As side_of(), of one sheet. If it has been unclear from the beginning, the answer is side_of() of the part.
+  /// @param triangles  of the part, near the body   @param sheets  of these
+  float side_of_sheet(std::uint32_t rigid, std::uint32_t part, std::span<const Triangle> triangles,
+                      const TriangleSheets& sheets, const SheetSeen& sheet);
+  /// Whether the body remembers its side of a sheet of this part.
+  bool knows_sheets(std::uint32_t rigid, std::uint32_t part) const;
 
   /// How far a body has come without passing through a triangle, in the frame of these triangles, metres.
   struct Track {
@@ -41,11 +60,17 @@ class KnownSides {
   static constexpr auto of(std::uint32_t rigid, std::uint32_t part) {
     return [=](const auto& known) { return known.rigid == rigid && known.part == part; };
   }
+  static constexpr auto of_whole(std::uint32_t rigid, std::uint32_t part) {
+    return [=](const auto& known) { return known.rigid == rigid && known.part == part && !known.sheet; };
+  }
   struct Side {
     std::uint32_t rigid, part;
-    bool is_near;  // in this substep
-    int side;      // 0: not known
-    int doubts;    // substeps that showed the other side, since one last showed this side
+    bool is_near = true;                 // in this substep
+    std::optional<Triangle> sheet = {};  // one of its triangles; none: this is of all triangles of the part
+    int side = 0;                        // 0: not known
+    int doubts = 0;  // substeps that showed the other side, since one last showed this side
+
+    void look(int seen);
   };
   struct KnownTrack {
     std::uint32_t rigid, part;

@@ -26,6 +26,7 @@
 #include "ppu/surfaces/side_by_side.h"
 #include "ppu/surfaces/triangle_boxes.h"
 #include "ppu/surfaces/triangle_distance.h"
+#include "ppu/surfaces/triangle_sheets.h"
 #include "softcell/soft_bodies/shapes.h"
 
 namespace softcell::ppu {
@@ -231,6 +232,32 @@ TEST(EdgeSet, KnowsWhichSidesStandOutOfNothing) {
   EXPECT_EQ(flat_sides(0.2f, true, false), none) << "bent";
   EXPECT_EQ(flat_sides(0, false, false), none) << "two sides of one sheet, or folded onto itself";
   EXPECT_EQ(flat_sides(0, true, true), none) << "a third one stands on it";
+}
+
+TEST(TriangleSheets, AreJoinedBySidesOfTwoTrianglesThatAreWoundAlike) {
+  using Triangle = CornerSet::Triangle;
+  const Vector3f a(0, 0, 0), b(1, 0, 0), c(1, 0, -1), d(0, 0, -1), e(2, 0, 0), up(1, 1, 0);
+  const auto sheets_of = [](const std::vector<Triangle>& triangles) {
+    TriangleSheets sheets;
+    sheets.find(triangles);
+    std::vector<std::uint32_t> all;
+    for (std::size_t t = 0; t < triangles.size(); ++t) all.push_back(sheets.of(t));
+    EXPECT_EQ(sheets.count(), *std::ranges::max_element(all) + 1u);
+    return all;
+  };
+  using Sheets = std::vector<std::uint32_t>;
+  EXPECT_EQ(sheets_of({{a, b, c}, {a, c, d}}), (Sheets{0, 0})) << "a square";
+  EXPECT_EQ(sheets_of({{a, b, c}, {a, d, c}}), (Sheets{0, 1})) << "wound against each other";
+  EXPECT_EQ(sheets_of({{a, b, c}, {b, e, up}}), (Sheets{0, 1})) << "a corner joins nothing";
+  EXPECT_EQ(sheets_of({{a, b, c}, {b, e, c}, {b, up, c}}), (Sheets{0, 1, 2})) << "a wall on a floor's side";
+  EXPECT_EQ(sheets_of({{a, b, c}, {a, b, up}, {a, c, d}}), (Sheets{0, 1, 0})) << "in the order of triangles";
+  // Around a closed box all are joined, in whatever order they come.
+  const TriangleMesh box = make_box({1, 1, 1}, 0.25f);
+  std::vector<Triangle> triangles;
+  for (const auto& t : box.triangles)
+    triangles.push_back({box.positions[t[0]], box.positions[t[1]], box.positions[t[2]]});
+  std::shuffle(triangles.begin(), triangles.end(), std::mt19937(1));
+  EXPECT_EQ(sheets_of(triangles), Sheets(triangles.size(), 0));
 }
 
 /// Whoever has seen other triangles before knows the same of these as whoever sees them first.

@@ -114,6 +114,43 @@ TEST(SurfaceContacts, NothingPassesAWallOfTriangles) {
   }
 }
 
+/// On the floor a body is on the front of the floor's triangles; on which side of the wall's it is follows from these alone.
+TEST(SurfaceContacts, AWallInTheFloorsMeshHoldsFromBothSides) {
+  constexpr float kCell = 0.1f;
+  for (const bool in_the_middle : {true, false})
+    for (const bool fronts_meet : {true, false}) {
+      SCOPED_TRACE(testing::Message() << "in the middle " << in_the_middle << ", front " << fronts_meet);
+      btTriangleMesh mesh;
+      const auto quad = [&](const btVector3& a, const btVector3& b, const btVector3& c, const btVector3& d) {
+        mesh.addTriangle(a, b, c);
+        mesh.addTriangle(a, c, d);
+      };
+      // The wall stands on a side of the floor's triangles, or inside of them.
+      const float end = in_the_middle ? 5 : 1;
+      quad({-5, 0, -5}, {-5, 0, 5}, {end, 0, 5}, {end, 0, -5});
+      if (!in_the_middle) quad({1, 0, -5}, {1, 0, 5}, {5, 0, 5}, {5, 0, -5});
+      if (fronts_meet)
+        quad({1, 0, 5}, {1, 3, 5}, {1, 3, -5}, {1, 0, -5});
+      else
+        quad({1, 0, 5}, {1, 0, -5}, {1, 3, -5}, {1, 3, 5});
+      for (const float speed : {0.0f, 3.0f, 15.0f}) {
+        ContactWorld w({4, -9.81f, 0});
+        w.add(std::make_unique<btBvhTriangleMeshShape>(&mesh, true), 0, {0, 0, 0}, 0);
+        SoftBody<3>& body = w.add(cube(0.4f, kCell), settings_of(kCell), {0.3f, 0.22f, 0});
+        w.run(10);
+        body.add_velocity({speed, 0, 0});
+        for (int i = 0; i < 40; ++i) {
+          w.run(5);
+          float behind = -1;
+          for (const Vector3f& p : ContactWorld::drawn(body)) behind = std::max(behind, p.x() - 1);
+          ASSERT_LT(behind, 0.25f * kCell) << speed << " m/s, frame " << 5 * i;
+          ASSERT_GT(ContactWorld::lowest_drawn(body), -0.25f * kCell);
+        }
+        EXPECT_GT(body.centre_of_mass().x(), 0.7f) << "it has come to the wall";
+      }
+    }
+}
+
 /// The middle of a thin sheet is always near what it slides on: where it has been must not lag behind.
 TEST(SurfaceContacts, AThinSheetSlidesOverAHillOfTriangles) {
   if (kSlowBuild) GTEST_SKIP() << "with sanitizers, which have the others";
