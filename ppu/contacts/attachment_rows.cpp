@@ -654,7 +654,6 @@ void AttachmentRows<kDimension>::finish() {
   state_.force = carried_impulse() / step_;
   limit_pushes(a_, sides_.a);
   if (sides_.b != nullptr) limit_pushes(b_, *sides_.b);
-  take_back_spin();
 }
 
 template <int kDimension>
@@ -666,16 +665,57 @@ std::span<const std::uint32_t> AttachmentRows<kDimension>::patch_of(const Side& 
 
 /// A rope's impulse lies on the line between its ends, so it adds none. A side that does not move takes spin as it takes momentum.
 template <int kDimension>
-void AttachmentRows<kDimension>::take_back_spin() {
-  const bool with_rigid = sides_.b == nullptr && sides_.rigid != nullptr && sides_.rigid->inverse_mass > 0;
-  const bool is_free = with_rigid || (sides_.b != nullptr && !sides_.b->asleep);
-  if (!gives_way() || settings_.kind == AttachmentKind::kRope || !is_free || sides_.a.asleep) return;
-  turning::Axial<kDimension> given = turning::cross(Eigen::Vector<double, kDimension>::Zero().eval(),
-                                                    Eigen::Vector<double, kDimension>::Zero().eval());
+bool AttachmentRows<kDimension>::takes_back_spin() const {
+  if (settings_.kind == AttachmentKind::kRope || sides_.a.asleep) return false;
+  if (sides_.b != nullptr) return softness_ > 0 && !sides_.b->asleep;
+  return pushes_soft_body_only();
+}
+
+/// A free rigid body is not pushed.
+template <int kDimension>
+bool AttachmentRows<kDimension>::pushes_soft_body_only() const {
+  return sides_.b == nullptr && sides_.rigid != nullptr && sides_.rigid->inverse_mass > 0;
+}
+
+template <int kDimension>
+void AttachmentRows<kDimension>::count_particles(std::vector<std::uint16_t>& attachments) const {
+  attachments.resize(sides_.a.positions.size());
+  for (const std::uint32_t i : patch_of(a_, rows_.front().a)) ++attachments[i];
+}
+
+/// The angular momentum that the soft body gets as pushes move particles, each with its momentum: a particle that follows the rigid body on
+/// an arc has gone straight on, and is pushed inwards. Pushes of attachments that contradict each other come again and again: no more counts
+/// than twice what arcs explain.
+template <int kDimension>
+auto AttachmentRows<kDimension>::spin_of_pushes(std::span<const std::uint16_t> attachments) const -> Axial {
+  using Wide = Eigen::Vector<double, kDimension>;
+  const AttachedBody<kDimension>& body = sides_.a;
+  const double step = double{step_};
+  Axial sum = turning::cross(Wide::Zero().eval(), Wide::Zero().eval());
+  double most = 0;
+  for (const std::uint32_t i : patch_of(a_, rows_.front().a)) {
+    const double share = attachments.empty() ? 1.0 : 1.0 / attachments[i];
+    const Wide momentum = body.velocities[i].template cast<double>() / double{body.inverse_masses[i]};
+    const Wide way = share * step * body.pushes[i].template cast<double>();
+    const Wide curve =
+        AttachedRigid<kDimension>::curve(*sides_.rigid, body.positions[i]).template cast<double>();
+    sum += turning::cross(way, momentum);
+    most += step * step * curve.norm() * momentum.norm();
+  }
+  const double size = turning::length_of(sum);
+  return size > most ? Axial(most / size * sum) : sum;
+}
+
+template <int kDimension>
+void AttachmentRows<kDimension>::take_back_spin(std::span<const std::uint16_t> attachments) {
+  if (!takes_back_spin()) return;
+  Axial given = turning::cross(Eigen::Vector<double, kDimension>::Zero().eval(),
+                               Eigen::Vector<double, kDimension>::Zero().eval());
   for (const Row& row : rows_) {
     const Vector apart = a_.of(row.a, sides_.a.positions) - row.point;
     given += turning::cross(apart.template cast<double>().eval(), row.impulse.template cast<double>().eval());
   }
+  if (pushes_soft_body_only()) given += spin_of_pushes(attachments);
   TurnedPatches<kDimension> patches;
   patches.add(sides_.a, patch_of(a_, rows_.front().a));
   if (sides_.b != nullptr) patches.add(*sides_.b, patch_of(b_, rows_.front().b));

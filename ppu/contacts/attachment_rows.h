@@ -29,6 +29,7 @@
 #include <vector>
 
 #include "ppu/contacts/attached_rigid.h"
+#include "ppu/numbers/turning.h"
 #include "softcell/soft_bodies/attachment.h"
 
 namespace softcell::ppu {
@@ -123,10 +124,14 @@ class AttachmentRows {
   float iterate();
   /// Ends the substep after the last iteration.
   void finish();
-  /// Takes back the angular momentum that a compliant attachment has added: its ends are apart, so its two impulses do not lie on one line
-  /// if the ends also move sideways. It turns the patches of soft bodies, no rigid body. finish() calls it; after a kernel, call it last.
-  void take_back_spin();
-  bool gives_way() const { return softness_ > 0; }
+  /// Takes back the angular momentum that an attachment has added by error: if it is compliant its ends are apart, so its two impulses do
+  /// not lie on one line if the ends also move sideways; and particles that follow a rigid body are pushed while they move. It turns the
+  /// patches of soft bodies, no rigid body. Call it after finish() of all attachments, or after a kernel.
+  /// @param attachments  of each of a's particles, as count_particles() of all has counted them; empty: there is only this one
+  void take_back_spin(std::span<const std::uint16_t> attachments);
+  bool takes_back_spin() const;
+  /// Adds 1 for each of a's particles that is in the patch.
+  void count_particles(std::vector<std::uint16_t>& attachments) const;
 
   /// Whether the impulse after the last iteration of the last substep exceeds the break force.
   bool broke() const { return broke_; }
@@ -142,6 +147,9 @@ class AttachmentRows {
   struct Place {
     std::uint32_t first = 0, count = 0;
   };
+  using Axial = turning::Axial<kDimension>;
+  bool pushes_soft_body_only() const;
+  Axial spin_of_pushes(std::span<const std::uint16_t> attachments) const;
   struct Side {
     std::vector<std::uint32_t> particle;
     std::vector<float> share;

@@ -90,16 +90,21 @@ void Attachments<kDimension>::iterate(int iterations) {
 template <int kDimension>
 void Attachments<kDimension>::finish() {
   for (const Solved& solved : solved_) solved.rows->finish();
+  take_back_spin();
 }
 
 template <int kDimension>
 void Attachments<kDimension>::take_back_spin() {
-  for (const Solved& solved : solved_) solved.rows->take_back_spin();
+  sharing_.resize(std::max(sharing_.size(), attached_to_.size()));
+  for (std::vector<std::uint16_t>& sharing : sharing_) sharing.clear();
+  for (const Solved& solved : solved_)
+    if (attached_to_[solved.sides.a] > 1) solved.rows->count_particles(sharing_[solved.sides.a]);
+  for (const Solved& solved : solved_) solved.rows->take_back_spin(sharing_[solved.sides.a]);
 }
 
 template <int kDimension>
-bool Attachments<kDimension>::gives_way() const {
-  return std::ranges::any_of(solved_, [](const Solved& solved) { return solved.rows->gives_way(); });
+bool Attachments<kDimension>::takes_back_spin() const {
+  return std::ranges::any_of(solved_, [](const Solved& solved) { return solved.rows->takes_back_spin(); });
 }
 
 template class Attachments<2>;

@@ -90,8 +90,8 @@ class Attachments final : public AttachmentSolver<kDimension> {
     AttachmentRecords<kDimension>(*solved_[attachment].rows).read(link, points, rows);
   }
   void take_back_spin() override;
-  /// Whether one of the attachments is compliant.
-  bool gives_way() const;
+  /// Whether one of the attachments does.
+  bool takes_back_spin() const;
 
  private:
   struct Solved {
@@ -104,6 +104,8 @@ class Attachments final : public AttachmentSolver<kDimension> {
   std::vector<AttachmentInStep<kDimension>> all_;
   std::vector<Solved> solved_;  // the attachments with a side that may move
   std::vector<std::pair<std::uint32_t, std::uint32_t>> parted_;
+  std::vector<std::vector<std::uint16_t>>
+      sharing_;  // of bodies with several attachments: of each particle, how many it has
   std::vector<std::uint32_t> attached_to_;  // soft bodies, then rigid ones: how many of solved_ each has
 };
 

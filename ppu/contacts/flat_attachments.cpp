@@ -98,7 +98,7 @@ void FlatAttachments::finish() {
 }
 
 void FlatAttachments::take_back_spin() {
-  if (!in_plane_.gives_way()) return;
+  if (!in_plane_.takes_back_spin()) return;
   lower();
   in_plane_.take_back_spin();
   raise();

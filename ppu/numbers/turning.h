@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
+#include <cmath>
 
 #include "ppu/numbers/cross.h"
 
@@ -27,6 +28,9 @@ inline Eigen::Matrix3d inertia_of(const Eigen::Matrix3d& second_moment) {
 }
 inline Eigen::Matrix3d inverse(const Eigen::Matrix3d& inertia) { return inertia.inverse(); }
 inline Eigen::Vector3f to_float(const Eigen::Vector3d& axial) { return axial.cast<float>(); }
+
+inline double length_of(double axial) { return std::abs(axial); }
+inline double length_of(const Eigen::Vector3d& axial) { return axial.norm(); }
 
 /// The angular velocity (rad/s) with this angular momentum; 0 for particles on one point or, in three dimensions, on one line.
 inline double turn_of(double inertia, double spin) { return inertia > 0 ? spin / inertia : 0; }

@@ -102,18 +102,27 @@ TEST_P(Box2dAttachments, TwoFreeBodiesKeepTheirMomentum) {
   }
 }
 
+/// The angular momentum about the origin. @param size  is increased by the sum of its particles' magnitudes
+double spin_of(const SoftBody<2>& body, double& size) {
+  double spin = 0;
+  for (std::size_t i = 0; i < body.model().particles(); ++i) {
+    const Eigen::Vector2d x = body.position(i).cast<double>(), v = body.velocities()[i].cast<double>();
+    const double mass = double{body.model().masses()[i]};
+    spin += mass * (x.x() * v.y() - x.y() * v.x());
+    size += mass * x.norm() * v.norm();
+  }
+  return spin;
+}
+double spin_of(const b2Body& body) {
+  const b2Vec2 at = body.GetWorldCenter(), v = body.GetLinearVelocity();
+  const float about_centre = (body.GetInertia() - body.GetMass() * body.GetLocalCenter().LengthSquared()) *
+                             body.GetAngularVelocity();
+  return double{body.GetMass()} * (double{at.x} * double{v.y} - double{at.y} * double{v.x}) +
+         double{about_centre};
+}
+
 /// A compliant attachment is stretched: if its ends also move sideways, its two impulses do not lie on one line.
 TEST_P(Box2dAttachments, TwoFreeBodiesThatAreApartKeepTheirAngularMomentum) {
-  const auto spin_of = [](const SoftBody<2>& body, double& size) {
-    double spin = 0;
-    for (std::size_t i = 0; i < body.model().particles(); ++i) {
-      const Eigen::Vector2d x = body.position(i).cast<double>(), v = body.velocities()[i].cast<double>();
-      const double mass = double{body.model().masses()[i]};
-      spin += mass * (x.x() * v.y() - x.y() * v.x());
-      size += mass * x.norm() * v.norm();
-    }
-    return spin;
-  };
   for (const float compliance : {1e-4f, 1e-3f, 1e-2f}) {
     World2d w(0, GetParam());
     SoftBody<2>& a = w.soft.add(rectangle_model({4, 4}, firm()), {-0.4f, -0.2f});
@@ -128,6 +137,25 @@ TEST_P(Box2dAttachments, TwoFreeBodiesThatAreApartKeepTheirAngularMomentum) {
     w.run(1000 * kStepOf2d);
     EXPECT_LT(std::abs(spin_of(a, unused) + spin_of(b, unused) - before), 1e-5 * size) << compliance;
   }
+}
+
+/// What moves in an arc with a rigid body is pushed off its straight way.
+TEST_P(Box2dAttachments, AFreeBodyAndARigidOneKeepTheirAngularMomentum) {
+  for (const AttachmentKind kind : {AttachmentKind::kWeld, AttachmentKind::kHinge})
+    for (const float compliance : {0.0f, 1e-3f}) {
+      World2d w(0, GetParam());
+      SoftBody<2>& soft = w.soft.add(rectangle_model({4, 4}, firm()), {-0.4f, -0.2f});
+      b2Body* const box = w.add_box({0.4f, 0}, {0.2f, 0.2f}, 100);
+      w.soft.attach(soft, Patch<2>::of_surface({-0.2f, 0}, 0.3f), *box,
+                    {.kind = kind, .compliance = compliance});
+      soft.add_velocity({0.3f, 1});
+      box->SetLinearVelocity({-0.3f, -1});
+      double size = 0, unused = 0;
+      const double before = spin_of(soft, size) + spin_of(*box);
+      w.run(1000 * kStepOf2d);
+      EXPECT_LT(std::abs(spin_of(soft, unused) + spin_of(*box) - before), 5e-5 * size)
+          << static_cast<int>(kind) << " that gives " << compliance;
+    }
 }
 
 TEST_P(Box2dAttachments, AHingeToARigidBodyCarriesIt) {
