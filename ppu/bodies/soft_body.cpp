@@ -340,7 +340,7 @@ void SoftBody<kDimension>::flow(float step, std::optional<float> stretch) {
     if (looked) yields = rest_->flow->may_yield(x_, plasticity.yield);
     if (!*yields) return;
   }
-  // The body may have sprung back when the flow is done: a larger share would make it oscillate in some cases.
+  // The body has moved on when the flow is done: a larger share would make it oscillate in some cases.
   constexpr double kMost = 0.7;
   const double share = std::min(kMost, damping_from_time_constant(1 / static_cast<double>(plasticity.creep),
                                                                   kPlasticSteps * static_cast<double>(step)));
@@ -363,8 +363,16 @@ void SoftBody<kDimension>::take_flow() {
   rest_->wait();
   std::shared_ptr<const typename RestShape::Shape> flowed = std::exchange(rest_->next, {}).get();
   rest_->is_flowing = flowed != nullptr;
-  rest_->worn = flowed ? std::exchange(rest_->shape, flowed) : nullptr;
+  rest_->worn = nullptr;
   if (!flowed) return;
+  if (!rest_->flow->takes_energy(x_)) {
+    rest_->flow->take_back();
+    rest_->worn = flowed;
+    // Looks that keep time with a swing would come to this again and again.
+    ++steps_since_look_;
+    return;
+  }
+  rest_->worn = std::exchange(rest_->shape, flowed);
   matcher_->set_plan(plan());
   ++rest_revision_;
 }

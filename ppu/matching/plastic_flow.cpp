@@ -357,6 +357,40 @@ bool PlasticFlow<kDimension>::stop_bad_cells(std::span<const Exact> shape) {
   return any;
 }
 
+/// With R the rotation of an edge when the body was seen, f its flow, d the edge at rest and D the edge now, s = R^T D - d is what stretches
+/// it. Half the sum of s^2 stands for the energy; the flow makes it half the sum of (s - f)^2. It takes energy as long as sum f . s is more
+/// than half of sum f^2. That it be all of it, so that the rest shape does not pass the present one, leaves something for what this leaves
+/// out: how an edge has turned since, and what flows to keep the volume.
+template <int kDimension>
+void PlasticFlow<kDimension>::find_along() {
+  along_.assign(rest_.size(), Exact::Zero());
+  least_along_ = 0;
+  for (std::size_t l = 0; l < d_.size(); ++l) {
+    const auto& edge = lattice_->edges()[l];
+    const Exact along = turned(halfway(rotations_[edge.from], rotations_[edge.to]), flow_[l]);
+    along_[edge.to] += along;
+    along_[edge.from] -= along;
+    least_along_ += flow_[l].dot(d_[l]) + flow_[l].squaredNorm();
+  }
+}
+
+template <int kDimension>
+bool PlasticFlow<kDimension>::takes_energy(std::span<const Vector> x) const {
+  SC_ASSERT(x.size() == along_.size(), "{} positions of {} particles that have flowed", x.size(),
+            along_.size());
+  double sum = 0;
+  for (std::size_t i = 1; i < x.size(); ++i) sum += along_[i].dot((x[i] - x[0]).template cast<double>());
+  return sum > least_along_;
+}
+
+template <int kDimension>
+void PlasticFlow<kDimension>::take_back() {
+  SC_ASSERT(rest_before_.size() == rest_.size(), "a flow of {} particles, of {}", rest_before_.size(),
+            rest_.size());
+  rest_.swap(rest_before_);
+  inverse_squares_.swap(inverse_squares_before_);
+}
+
 template <int kDimension>
 bool PlasticFlow<kDimension>::flow(std::span<const Vector> x, const SumPlan& sums,
                                    const Plasticity& plasticity, double share) {
@@ -377,12 +411,14 @@ bool PlasticFlow<kDimension>::flow(std::span<const Vector> x, const SumPlan& sum
   }
   calm_ = 0;
   find_flow(sums, plasticity, share);
+  find_along();
   keep_volume();
   constexpr int kTries = 4;
   for (int i = 0; i < kTries; ++i) {
     std::vector<Exact> shape = new_shape();
     if (stop_bad_cells(shape)) continue;
-    rest_ = std::move(shape);
+    rest_before_ = std::exchange(rest_, std::move(shape));
+    inverse_squares_before_ = inverse_squares_;
     find_inverse_squares();
     return true;
   }

@@ -75,6 +75,12 @@ class PlasticFlow {
   /// @return         whether the rest shape has changed
   bool flow(std::span<const Vector> x, const SumPlan& sums, const Plasticity& plasticity, double share);
 
+  /// Whether the last flow() takes elastic energy out of a body that has moved on to `x` (metres) meanwhile. A body that swings may have
+  /// sprung back: then the rest shape would move away from it, and the body would gain energy from nothing.
+  bool takes_energy(std::span<const Vector> x) const;
+  /// Undoes the last flow(). @pre  it has changed the rest shape, and nothing has since
+  void take_back();
+
   /// The least volume of a cell of the rest shape, in spacing^n: the volume that its mean edges span. A cell counts as crushed below 0.5
   /// (contacts/crushed_cells.h).
   static constexpr double kLeastRestVolume = 0.7;
@@ -94,16 +100,21 @@ class PlasticFlow {
   void keep_volume();
   std::vector<Exact> new_shape() const;
   bool stop_bad_cells(std::span<const Exact> shape);
+  void find_along();
 
   std::shared_ptr<const RestLattice<kDimension>> lattice_;
-  std::vector<Exact> rest_;
-  std::vector<float> inverse_squares_;  // of lengths at rest, as RestLattice::each_length() visits them
+  std::vector<Exact> rest_, rest_before_;  // before: the last flow
+  std::vector<float> inverse_squares_,
+      inverse_squares_before_;  // of lengths at rest, as RestLattice::each_length() visits them
   std::vector<Eigen::Quaterniond> rotations_;  // of each particle; in two dimensions about z
   // Of each edge.
   std::vector<Exact> d_, eta_, flow_;
   std::vector<Spin> bend_;
   std::vector<double> strain_, rate_, turn_;
   double largest_strain_ = 0;
+  // Of the last flow: it takes energy if the sum of along_ . x is above least_along_.
+  std::vector<Exact> along_;  // of each particle
+  double least_along_ = 0;
   double volume_ = 0;  // of the rest shape, spacing^n
   // stretch_: how much lengths differed at the last quick check. calm_: up to this difference, a body that did not yield is not checked
   // closely again, until the difference is much less.

@@ -108,7 +108,7 @@ class SoftBody {
 
   /// Lets a plastic body flow: changes its rest shape. Call it in each time step after pull(). Every kPlasticSteps-th call looks at the
   /// strains. If the body may yield, another thread computes the flow, and the call kFlowSteps steps later applies the result, for which it
-  /// may have to wait. Only such steps allocate memory.
+  /// may have to wait, unless the body has sprung back so far that this would add energy. Only such steps allocate memory.
   /// @param stretch  how much distances differ from those of the rest shape, as the SPEs' solver has measured it: saves most looks, and
   ///                 does not change results. Nothing: not measured
   void flow(float step, std::optional<float> stretch = {});
