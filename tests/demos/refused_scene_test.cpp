@@ -55,6 +55,13 @@ TEST(RefusedScene, ABodyThatCannotBreakAsItsContactsAreSpheresIsNamed) {
                 .find("s.toml:1:1: soft body 1 ('cube'): a soft body with a fracture touches with spheres"),
             0u)
       << refusal(kCube + fracture, {.contacts = ppu::ContactMethod::kSpheres});
+  // At once, and not when the time of the cut has come.
+  const std::string cut = "[[cut]]\nbody = \"cube\"\ntime = 9\npoint = [0, 0, 0]\nnormal = [1, 0, 0]\n";
+  EXPECT_EQ(refusal(kCube + cut), "");
+  EXPECT_EQ(refusal(kCube + cut, {.contacts = ppu::ContactMethod::kSpheres})
+                .find("s.toml:5:1: cut 1: the soft body to be cut touches with spheres"),
+            0u)
+      << refusal(kCube + cut, {.contacts = ppu::ContactMethod::kSpheres});
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <string>
 #include <type_traits>
 #include <vector>
 
@@ -43,8 +44,9 @@ float strength_at(const std::vector<StrengthSlab<Dimension>>& slabs,
 /// A plane or a stroke that cuts a soft body and all of its pieces; in two dimensions a line or a segment of one.
 template <int Dimension>
 struct ScriptedCut {
-  float time = 0;        ///< seconds
-  std::size_t body = 0;  ///< number of the soft body
+  float time = 0;         ///< seconds
+  std::size_t body = 0;   ///< number of the soft body
+  std::string described;  ///< where it is written, for messages: "bread.toml:12:1: cut 2"
   std::conditional_t<Dimension == 3, ppu::Cut, ppu::Cut2d> where;
 };
 

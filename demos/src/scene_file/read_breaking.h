@@ -67,6 +67,7 @@ void read_cuts(std::span<const Value> items, SceneOf& scene) {
   for (std::size_t i = 0; i < items.size(); ++i) {
     FieldReader fields(items[i], item_name("cut", i));
     ScriptedCut<Dimension>& cut = scene.cuts.emplace_back();
+    cut.described = fields.described();
     cut.body = read_body(fields, scene);
     fields.number("time", cut.time, kTime, Need::kRequired);
     read_cut(fields, items[i].place, cut.where);

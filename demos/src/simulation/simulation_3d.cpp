@@ -167,6 +167,7 @@ struct Simulation3d::State {
                        [&] { twist(soft_bodies.add(whole[i], placement.position), placement.twist); });
       sources.push_back(i);
     }
+    check_cuts();
     attach();
     begin();
     for (Snapshot& snapshot : snapshots) snapshot.box_poses.resize(boxes.size());
@@ -417,6 +418,17 @@ struct Simulation3d::State {
     if (soft_bodies[body].shared_model() == whole[body]) return;
     let_go(body);
     soft_bodies[body] = ppu::SoftBody<3>(whole[body]);
+  }
+
+  /// Refuses a scene that could not be played to its end. @throws std::runtime_error  a cut of a body that does not break
+  void check_cuts() const {
+    for (const ScriptedCut<3>& cut : scene.cuts)
+      if (contacts == ppu::ContactMethod::kSpheres && soft_bodies[cut.body].model().settings().contacts)
+        describe_refusal(cut.described, [] {
+          throw std::invalid_argument(
+              "the soft body to be cut touches with spheres; only bodies that touch with their surfaces "
+              "break");
+        });
   }
 
   /// Pieces appear some substeps later. In a pause, which has no substeps, they appear at once.
