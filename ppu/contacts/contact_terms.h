@@ -19,13 +19,17 @@ inline bool contains(const Bounds<3>& box, const Eigen::Vector3f& point) {
 }
 
 /// Fills in the fields that follow from the motion along a contact's normal.
-/// @param end  metres, along the normal, at the substep's end; below 0 inside   @param approach  m/s along the normal, of a against b
-inline void complete(SoftContact& contact, float end, float approach, float friction, float step) {
-  // The distance at the beginning, assuming straight motion.
-  const float begin = end - step * approach;
+/// @param begin  metres, along the normal, at the substep's beginning; below 0 inside
+inline void complete_from(SoftContact& contact, float begin, float friction, float step) {
   contact.least_velocity = -std::max(begin, 0.0f) / step;
   contact.depth = std::max(-begin, 0.0f);
   contact.friction = friction;
+}
+
+/// The same from where the substep ends, assuming straight motion.
+/// @param end  metres, as above, at the substep's end   @param approach  m/s along the normal, of a against b
+inline void complete(SoftContact& contact, float end, float approach, float friction, float step) {
+  complete_from(contact, end - step * approach, friction, step);
 }
 
 /// The way out of a soft body.

@@ -187,6 +187,19 @@ std::optional<Hit> hit_of_entered_face(const Obstacle& obstacle, const Way& way,
   return Hit{there.normal, there.normal.dot(way.to - entry) + allowance};
 }
 
+/// Moves b's anchor of a contact within its cell, so that impulse and reaction act at one point at the substep's beginning; otherwise they
+/// would turn the two bodies. A point still on its way may be somewhat outside.
+Vector3f opposite(const ContactBody& b, const DeformedPlace& place, const Vector3f& point) {
+  constexpr float kFarthest = 0.5f;  // cells outside: farther out, shares become large
+  const Matrix3f inverse = place.jacobian.inverse();
+  Vector3f xi = place.xi;
+  for (int i = 0; i < 3; ++i) {
+    xi += inverse * (point - anchor_in_cell(b.lattice(), place.cell, xi).of(b.positions));
+    xi = xi.cwiseMax(-kFarthest).cwiseMin(1 + kFarthest);
+  }
+  return xi;
+}
+
 class ObstacleContacts {
  public:
   ObstacleContacts(const ContactBody& body, EndCells& cells, std::span<const Obstacle> obstacles,
@@ -632,7 +645,28 @@ class ObstacleContacts {
     contact.normal = -outwards / steep;
     contact.room = room_to_squeeze(body_, *place, -field.gradient.normalized(), -distance);
     const Vector3f v = contact.a.of(body_.velocities) - rigid_.velocity_at(point);
-    complete(contact, distance, contact.normal.dot(v), friction_, step_);
+    const float inside_edge = obstacle_.rounding + radius;
+    if (const auto before = distance_before(*place, corner, outwards / steep))
+      complete_from(contact, *before - inside_edge, friction_, step_);
+    else
+      complete(contact, distance, contact.normal.dot(v), friction_, step_);
+  }
+
+  /// Where a corner that is at a place of the body at the substep's end is at its beginning: metres from the surface, below 0 inside. To go
+  /// back from the end with the velocities leaves errors where the body bends, and what rests on it would tremble.
+  /// @param normal  of the surface at the end   @return none: it moves far within the body, or was near another face
+  std::optional<float> distance_before(const DeformedPlace& place, const Vector3f& corner,
+                                       const Vector3f& normal) const {
+    constexpr float kFar = 0.1f, kClose = 0.01f;  // cells
+    const Vector3f xi = opposite(body_, place, corner);
+    if ((place.xi - xi).norm() > kFar) return {};
+    const Vector3f found = anchor_in_cell(body_.lattice(), place.cell, xi).of(body_.positions);
+    if (!((found - corner).norm() < kClose * body_.spacing())) return {};
+    const FieldValue field = body_.model->surface.field(place.cell, xi);
+    const Vector3f outwards = place.jacobian.inverse().transpose() * field.gradient;
+    const float steep = outwards.norm();
+    if (!(outwards.dot(normal) > kAlike * steep)) return {};
+    return field.distance / steep;
   }
 
   const ContactBody& body_;
@@ -657,23 +691,6 @@ void find_contacts(const ContactBody& body, EndCells& cells, std::span<const Obs
                    std::span<const ContactRigid> rigids, float step, std::vector<SoftContact>& contacts) {
   ObstacleContacts(body, cells, obstacles, near, obstacle, rigids, step, contacts).find();
 }
-
-namespace {
-
-/// Moves b's anchor of a contact within its cell, so that impulse and reaction act at one point at the substep's beginning; otherwise they
-/// would turn the two bodies. A point still on its way may be somewhat outside.
-Vector3f opposite(const ContactBody& b, const DeformedPlace& place, const Vector3f& point) {
-  constexpr float kFarthest = 0.5f;  // cells outside: farther out, shares become large
-  const Matrix3f inverse = place.jacobian.inverse();
-  Vector3f xi = place.xi;
-  for (int i = 0; i < 3; ++i) {
-    xi += inverse * (point - anchor_in_cell(b.lattice(), place.cell, xi).of(b.positions));
-    xi = xi.cwiseMax(-kFarthest).cwiseMin(1 + kFarthest);
-  }
-  return xi;
-}
-
-}  // namespace
 
 namespace {
 
