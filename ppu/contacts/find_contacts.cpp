@@ -127,6 +127,11 @@ class ObstacleTriangle {
 struct Arrival {
   float share;  ///< of the way
   Separation there;
+
+  /// On the obstacle.
+  Vector3f place_on(const Way& way) const {
+    return way.from + share * (way.to - way.from) - there.distance * there.normal;
+  }
 };
 
 /// @param near  metres from the obstacle  @return  the first such place of the motion; none: it does not come near
@@ -157,13 +162,12 @@ Hit hit_at(const Arrival& arrival, const Way& way, float allowance) {
 /// @return  the contact with the face beyond the edge; none: there is no edge near, or the body runs into the face
 std::optional<Hit> hit_of_face_beside(const Obstacle& obstacle, const Way& way, const Arrival& arrival,
                                       const Vector3f& inwards, float allowance, float spacing) {
-  const auto& [share, there] = arrival;
+  const Separation& there = arrival.there;
   const float cosine = inwards.dot(there.normal);
   const Vector3f aside = inwards - cosine * there.normal;
   const float sine = aside.norm();
   if (sine < kFaceOn) return {};
-  const Vector3f place = way.from + share * (way.to - way.from);
-  const Vector3f behind = place - (there.distance + kNear * spacing) * there.normal;
+  const Vector3f behind = arrival.place_on(way) - kNear * spacing * there.normal;
   const Vector3f beyond = behind + kBeside * spacing / sine * aside;
   const Separation face = separation(obstacle, beyond);
   if (face.distance < 0 || face.normal.dot(inwards) < 0.5f * (cosine + 1)) return {};
@@ -591,9 +595,11 @@ class ObstacleContacts {
   }
 
   Hit hit_of(const TouchPoint& point, const Way& way, const Arrival& arrival, std::uint32_t cell) {
-    const auto beside =
-        hit_of_face_beside(obstacle_, way, arrival, inwards_of(point), point.allowance, body_.spacing());
-    if (beside) return *beside;
+    const float spacing = body_.spacing();
+    if (may_turn_near(obstacle_, arrival.place_on(way), kBeside * spacing))
+      if (const auto beside =
+              hit_of_face_beside(obstacle_, way, arrival, inwards_of(point), point.allowance, spacing))
+        return *beside;
     return turned_outwards(hit_at(arrival, way, point.allowance), way, cell, point.allowance);
   }
 

@@ -143,6 +143,31 @@ Bounds<3> bounds(const Obstacle& obstacle) {
   return {obstacle.position - reach, obstacle.position + reach};
 }
 
+bool may_turn_near(const Obstacle& obstacle, const Vector3f& point, float reach) {
+  const float bend = 10 * reach;  // of a smaller radius than this
+  if (obstacle.rounding >= bend) return false;
+  switch (obstacle.kind) {
+    case ObstacleKind::kPlane:
+      return false;
+    case ObstacleKind::kBox:
+      return ((point.cwiseAbs() - obstacle.extent).array() > -reach).count() > 1;
+    case ObstacleKind::kCylinder: {
+      const float radius = obstacle.extent.x();
+      const bool at_side = std::hypot(point.x(), point.z()) > radius - reach;
+      const bool at_end = std::abs(point.y()) > obstacle.extent.y() - reach;
+      return at_side && (at_end || radius < bend);
+    }
+    case ObstacleKind::kHull:
+      return std::ranges::count_if(obstacle.planes, [&](const Eigen::Vector4f& plane) {
+               return plane.head<3>().dot(point) - plane.w() > -reach;
+             }) > 1;
+    case ObstacleKind::kCone:
+    case ObstacleKind::kTriangles:
+      break;
+  }
+  return true;
+}
+
 Separation separation(const Obstacle& obstacle, const Vector3f& point) {
   Separation result = from_core(obstacle, point);
   result.distance -= obstacle.rounding;

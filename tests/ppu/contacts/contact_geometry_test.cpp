@@ -101,6 +101,27 @@ TEST(Obstacle, NormalsLeadToTheSurface) {
   }
 }
 
+TEST(Obstacle, TurnsAtItsEdgesAndWhereItIsRound) {
+  const auto turns = [](ObstacleKind kind, const Vector3f& extent, float rounding, const Vector3f& point) {
+    Obstacle obstacle;
+    obstacle.kind = kind, obstacle.extent = extent, obstacle.rounding = rounding;
+    return may_turn_near(obstacle, point, 0.1f);
+  };
+  using enum ObstacleKind;
+  const Vector3f half(1, 2, 3), none(0, 0, 0);
+  EXPECT_FALSE(turns(kPlane, none, 0, {5, 0, 5}));
+  EXPECT_FALSE(turns(kBox, half, 0, {0.5f, 2, 1})) << "on a face";
+  EXPECT_TRUE(turns(kBox, half, 0, {-0.95f, 2, 1})) << "near an edge of it";
+  EXPECT_TRUE(turns(kBox, half, 0.5f, {0.95f, 2.5f, 1})) << "near a rounded edge";
+  EXPECT_FALSE(turns(kBox, half, 1.5f, {0.95f, 3.5f, 1})) << "near one that is as round as a large ball";
+  EXPECT_TRUE(turns(kBox, none, 0.9f, {0, 0.9f, 0})) << "a ball";
+  EXPECT_FALSE(turns(kBox, none, 1.1f, {0, 1.1f, 0})) << "a large ball";
+  EXPECT_FALSE(turns(kCylinder, {2, 1, 2}, 0, {2, 0.5f, 0})) << "on the side";
+  EXPECT_TRUE(turns(kCylinder, {2, 1, 2}, 0, {2, -0.95f, 0})) << "near a rim";
+  EXPECT_FALSE(turns(kCylinder, {2, 1, 2}, 0, {1, 1, 0})) << "on an end";
+  EXPECT_TRUE(turns(kCylinder, {0.5f, 1, 0.5f}, 0, {0, 0.5f, 0.5f})) << "on the side of a thin one";
+}
+
 /// However many triangles there are: a search finds those whose boxes meet, in their order.
 TEST(TriangleBoxes, FindsWhatAPlainLoopFinds) {
   RandomPoints random;
