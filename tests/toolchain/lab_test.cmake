@@ -52,6 +52,28 @@ says(1 "fpscr.c:2:[0-9]+: error: [^\n]*FPSCR is not modelled on the host" ${gcc}
 file(WRITE ${lab}/large.c "static char bytes[262144]; int main(void) { bytes[1] = 1; return bytes[2]; }\n")
 says(1 "does not fit into the local store: code and data take 262[0-9]+ bytes and the stack 4096, [0-9]+ more than its 262144\n$" ${gcc} ${lab}/large.c -o ${lab}/large)
 says(1 "and the stack 262144, [0-9]+ more" ${gcc} ${lab}/spu/main.o ${lab}/part.o -Wl,-z,stack-size=262144 -o ${lab}/large)
+
+# What several sources of a program define.
+file(WRITE ${lab}/one.c "int chosen(void) { return 1; }\n")
+file(WRITE ${lab}/two.c "int chosen(void) { return 2; }\n")
+file(WRITE ${lab}/calls.c "int chosen(void); int main(void) { return chosen(); }\n")
+foreach(sources "one.c;two.c" "two.c;one.c")
+  list(TRANSFORM sources PREPEND ${lab}/)
+  says(1 "multiple definition of `chosen'[^\n]*first defined here\n$" ${gcc} ${sources} ${lab}/calls.c -o ${lab}/twice)
+endforeach()
+file(WRITE ${lab}/old.c "int shared; int other(void); int main(void) { return shared + other(); }\n")
+file(WRITE ${lab}/value.c "int shared = 5; int other(void) { return 0; }\n")
+foreach(sources "old.c;value.c" "value.c;old.c")
+  list(TRANSFORM sources PREPEND ${lab}/)
+  step("a variable that two sources of old C define" ${gcc} ${sources} -o ${lab}/old)
+  says(1 "ended with status 5" ${BIN}/softcell spu run ${lab}/old)
+endforeach()
+file(WRITE ${lab}/own.c "#include <stdlib.h>\n#include <string.h>\nstatic char pool[64];\nvoid* malloc(size_t n) { return pool; }\n"
+  "int main(void) { return strdup(\"a\") == pool && calloc(1, 1) != NULL ? 7 : 8; }\n")
+step("a function of the library's name" ${gcc} -w ${lab}/own.c -o ${lab}/own)
+says(1 "ended with status 7" ${BIN}/softcell spu run ${lab}/own)
+says(1 "ended with status 7" ${BIN}/softcell spu run --checked ${lab}/own)
+
 says(2 "usage: softcell-embedspu" ${BIN}/softcell-embedspu symbol)
 says(2 "is no name of a variable" ${BIN}/softcell-embedspu 1st ${lab}/whole ${lab}/e.o)
 says(2 "is no ELF file" ${BIN}/softcell-embedspu name ${lab}/Makefile ${lab}/e.o)

@@ -155,6 +155,9 @@ void link(const Words& files, const std::filesystem::path& output, const Options
     }
     return;
   }
+  // A program's functions win over those of the library that have the same name, so the linker lets names be defined twice. What the
+  // program itself defines twice shows when its files are linked alone.
+  link_object(files, scratch.file("alone.o"));
   const auto whole = scratch.file("program.elf");
   if (const int status = link_with_stack(files, whole, false, options, places, false); status != 0)
     throw Failed{status};
