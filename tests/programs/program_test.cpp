@@ -150,7 +150,7 @@ TEST(Program, EndsItsStaticObjectsTheLastFirst) {
     const Ended ended = run("destroys", flavour, EntryArguments{});
     EXPECT_EQ(ended.output,
               "first is made\nsecond is made\nthird is made\natexit\na hundred end\nthird ends\nsecond "
-              "ends\nfirst ends\n");
+              "ends\nfirst ends\nthe last destructor function\nthe first destructor function\n");
     EXPECT_EQ(ended.result.status(), 0u) << ended.errors;
   }
 }
