@@ -74,6 +74,14 @@ step("a function of the library's name" ${gcc} -w ${lab}/own.c -o ${lab}/own)
 says(1 "ended with status 7" ${BIN}/softcell spu run ${lab}/own)
 says(1 "ended with status 7" ${BIN}/softcell spu run --checked ${lab}/own)
 
+# A main in an archive, and none.
+file(WRITE ${lab}/main_of_archive.c "int main(void) { return 6; }\n")
+step("an object with a main" ${gcc} -c ${lab}/main_of_archive.c -o ${lab}/main_of_archive.o)
+step("an archive with a main" ${BIN}/softcell-spu-ar rcs ${lab}/libmain.a ${lab}/main_of_archive.o)
+step("a main in an archive" ${gcc} ${lab}/value.c -L${lab} -lmain -o ${lab}/main_of_archive)
+says(1 "ended with status 6" ${BIN}/softcell spu run ${lab}/main_of_archive)
+says(1 "^[^\n]*there is no main\n$" ${gcc} ${lab}/value.c -o ${lab}/no_main)
+
 says(2 "usage: softcell-embedspu" ${BIN}/softcell-embedspu symbol)
 says(2 "is no name of a variable" ${BIN}/softcell-embedspu 1st ${lab}/whole ${lab}/e.o)
 says(2 "is no ELF file" ${BIN}/softcell-embedspu name ${lab}/Makefile ${lab}/e.o)
