@@ -65,7 +65,9 @@ if(NOT SOFTCELL_COMPILER_HEADERS)
   set_property(GLOBAL PROPERTY SOFTCELL_COMPILER_HEADERS ${SOFTCELL_COMPILER_HEADERS})
 endif()
 set(SOFTCELL_PROGRAM_FLAGS -ffunction-sections -fdata-sections -D__SPU__ -nostdinc
-  -isystem${SOFTCELL_SDK_DIR}/library/include -isystem${SOFTCELL_COMPILER_HEADERS})  # joined: CMake drops a second -isystem
+  -isystem${SOFTCELL_SDK_DIR}/library/include -isystem${SOFTCELL_COMPILER_HEADERS}  # joined: CMake drops a second -isystem
+  # There is no operating system in a local store, by which portable sources choose.
+  -Ulinux -U__linux -U__linux__ -U__gnu_linux__ -Uunix -U__unix -U__unix__)
 # Of a C source that softcell_vector_casts has rewritten: lines are those of the source, columns are not.
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   set(SOFTCELL_C_REWRITTEN_FLAGS -fno-diagnostics-show-caret)

@@ -82,6 +82,10 @@ step("a main in an archive" ${gcc} ${lab}/value.c -L${lab} -lmain -o ${lab}/main
 says(1 "ended with status 6" ${BIN}/softcell spu run ${lab}/main_of_archive)
 says(1 "^[^\n]*there is no main\n$" ${gcc} ${lab}/value.c -o ${lab}/no_main)
 
+# The SPU's compilers know no operating system.
+file(WRITE ${lab}/system.c "struct systems { int linux, unix; };\n#if defined(__linux__) || defined(__unix__)\n#error a system\n#endif\n")
+step("a source with names of systems" ${gcc} -c ${lab}/system.c -o ${lab}/system.o)
+
 says(2 "usage: softcell-embedspu" ${BIN}/softcell-embedspu symbol)
 says(2 "is no name of a variable" ${BIN}/softcell-embedspu 1st ${lab}/whole ${lab}/e.o)
 says(2 "is no ELF file" ${BIN}/softcell-embedspu name ${lab}/Makefile ${lab}/e.o)
