@@ -67,7 +67,12 @@ endif()
 set(SOFTCELL_PROGRAM_FLAGS -ffunction-sections -fdata-sections -D__SPU__ -nostdinc
   -isystem${SOFTCELL_SDK_DIR}/library/include -isystem${SOFTCELL_COMPILER_HEADERS}  # joined: CMake drops a second -isystem
   # There is no operating system in a local store, by which portable sources choose.
-  -Ulinux -U__linux -U__linux__ -U__gnu_linux__ -Uunix -U__unix -U__unix__)
+  -Ulinux -U__linux -U__linux__ -U__gnu_linux__ -Uunix -U__unix -U__unix__
+  # There is one thread, whose variables are variables like any other. (The compiler would look for them in memory of the host's thread.)
+  -D__thread= -D_Thread_local=)
+# In C++ the word may stand alone in a function, where it means static.
+set(SOFTCELL_PROGRAM_CXX_FLAGS -Werror=return-type
+  "-Dthread_local=_Pragma(\"GCC error \\\"one thread runs in a local store: leave out thread_local, or in a function write static\\\"\")")
 # Of a C source that softcell_vector_casts has rewritten: lines are those of the source, columns are not.
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   set(SOFTCELL_C_REWRITTEN_FLAGS -fno-diagnostics-show-caret)

@@ -34,7 +34,7 @@ function(softcell_compile_spu_sources target)
     list(APPEND SOFTCELL_KERNEL_FLAGS -Werror)
   endif()
   if(arg_PROGRAM)
-    list(APPEND SOFTCELL_KERNEL_FLAGS ${SOFTCELL_PROGRAM_FLAGS} -Werror=return-type)
+    list(APPEND SOFTCELL_KERNEL_FLAGS ${SOFTCELL_PROGRAM_FLAGS} ${SOFTCELL_PROGRAM_CXX_FLAGS})
   endif()
   add_library(${target} OBJECT ${arg_SOURCES})
   # The project's own flags come first on the command line; these win over them.

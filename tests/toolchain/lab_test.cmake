@@ -86,6 +86,15 @@ says(1 "^[^\n]*there is no main\n$" ${gcc} ${lab}/value.c -o ${lab}/no_main)
 file(WRITE ${lab}/system.c "struct systems { int linux, unix; };\n#if defined(__linux__) || defined(__unix__)\n#error a system\n#endif\n")
 step("a source with names of systems" ${gcc} -c ${lab}/system.c -o ${lab}/system.o)
 
+# Variables of a thread, of which there is one.
+file(WRITE ${lab}/threads.c "static __thread int a = 3; _Thread_local int b;\n"
+  "int main(void) { static __thread int c = 1; b += 2; a += 2; return a + b + c; }\n")
+step("variables of a thread" ${gcc} ${lab}/threads.c -o ${lab}/threads)
+says(1 "ended with status 8" ${BIN}/softcell spu run ${lab}/threads)
+file(WRITE ${lab}/threads.cpp "int main() {\n  thread_local int a = 3;\n  return ++a;\n}\n")
+says(1 "threads.cpp:2:[0-9]+: error: one thread runs in a local store: leave out thread_local" ${BIN}/softcell-spu-g++ ${lab}/threads.cpp -o ${lab}/threads)
+says(1 "one thread runs in a local store: leave out thread_local" ${BIN}/softcell-spu-g++ -Uthread_local ${lab}/threads.cpp -o ${lab}/threads)
+
 says(2 "usage: softcell-embedspu" ${BIN}/softcell-embedspu symbol)
 says(2 "is no name of a variable" ${BIN}/softcell-embedspu 1st ${lab}/whole ${lab}/e.o)
 says(2 "is no ELF file" ${BIN}/softcell-embedspu name ${lab}/Makefile ${lab}/e.o)
