@@ -39,6 +39,35 @@ static void numbers(void) {
   CHECK(bsearch(&values[17], values, 50, sizeof values[0], by_value) != NULL && div(-7, 2).rem == -1);
 }
 
+struct Named {
+  char name[100], kind;
+  int value;
+};
+static int by_value_of(const void* a, const void* b) {
+  return ((const struct Named*)a)->value - ((const struct Named*)b)->value;
+}
+
+/* Bytes that nobody has written may be copied with others. To be called while the heap is new. */
+static void copies_of_new_memory(void) {
+  struct Named* list = malloc(4 * sizeof list[0]);
+  for (int i = 0; i < 4; ++i) {
+    strcpy(list[i].name, "short");
+    list[i].kind = (char)i;
+    list[i].value = 4 - i;
+  }
+  struct Named* const copy = malloc(5 * sizeof list[0]);
+  memcpy(copy, list, 4 * sizeof list[0]);
+  memmove(copy + 1, copy, 4 * sizeof list[0]);
+  qsort(list, 4, sizeof list[0], by_value_of);
+  list = realloc(list, 8 * sizeof list[0]);
+  CHECK(list[0].value == 1 && list[3].value == 4 && list[0].kind == 3 && copy[4].value == 1 && strcmp(copy[4].name, "short") == 0);
+  char* const untouched = realloc(malloc(100), 300);
+  CHECK(untouched != NULL);
+  free(untouched);
+  free(copy);
+  free(list);
+}
+
 static void heap(void) {
   char* blocks[16];
   int i;
@@ -81,6 +110,7 @@ int main(int argc, char** argv) {
   assert(failures == 0);
   strings();
   numbers();
+  copies_of_new_memory();
   heap();
   output();
   printf("%d failures of %s\n", failures, "library.c");
