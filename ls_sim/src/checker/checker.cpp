@@ -242,20 +242,22 @@ ChannelReply Checker::issue(const dma::MfcCommand& command) {
   CommandInFlight in_flight{
       .command = command,
       .issued_at = to_.engine.position(),
-      .writes_local_store = command.is_get(),
-      .writes_main_storage = command.is_put() || command.kind() == CommandKind::kQueuedLine,
+      .writes_local_store = command.is_get() || command.opcode() == MfcOpcode::getllar,
+      .writes_main_storage = command.is_put() || command.kind() == CommandKind::kQueuedLine ||
+                             command.opcode() == MfcOpcode::putllc ||
+                             command.opcode() == MfcOpcode::putlluc || command.opcode() == MfcOpcode::sdcrz,
       .cursor = command.lsa};
   // The list as it is now: the command may write over it.
   add_ranges(in_flight, to_.local_store, runs_spu_program());
   ChannelReply reply = to_.channels.issue(command);
   if (reply.fault) return reply;
   if (command.kind() == CommandKind::kLine) {
-    check_line_command(command);
+    check_line_command(in_flight);
     return reply;
   }
   SC_ASSERT(command.tag < dma::kTagCount, "the MFC has accepted a command of tag {}", command.tag);
   tags_issued_ |= 1u << command.tag;
-  if (command.kind() == CommandKind::kCacheHint) return reply;
+  if (command.kind() == CommandKind::kCacheHint && command.opcode() != MfcOpcode::sdcrz) return reply;
   if (command.kind() == CommandKind::kQueuedLine) end_reservation(command);
   check_ranges(in_flight_.add(std::move(in_flight)));
   return reply;
@@ -263,8 +265,14 @@ ChannelReply Checker::issue(const dma::MfcCommand& command) {
 
 void Checker::check_ranges(CommandInFlight& command) {
   SC_ASSERT(objects_.has_value(), "command {} is checked before a run", command.number);
-  for (const MovedRange& range : command.ranges)
-    check_local_range(command.command, range, command.writes_local_store);
+  if (command.moves_local_store()) {
+    for (const MovedRange& range : command.ranges)
+      check_local_range(command.command, range, command.writes_local_store);
+  }
+  check_overlaps(command);
+}
+
+void Checker::check_overlaps(const CommandInFlight& command) {
   if (const CommandInFlight* const other = in_flight_.conflicting(command)) {
     report(Rule::kTransfersOverlap, to_.engine.position(), "in flight: " + describe(*other), command.command);
   }
@@ -304,9 +312,9 @@ void Checker::check_local_range(const dma::MfcCommand& command, const MovedRange
   mark_unsynced(range, here);
 }
 
-void Checker::check_line_command(const dma::MfcCommand& command) {
+void Checker::check_line_command(const CommandInFlight& line) {
+  const dma::MfcCommand& command = line.command;
   const Address here = to_.engine.position();
-  const MovedRange line{command.lsa.value, command.ea.value, dma::kLineBytes};
   if (status_unread_) {
     report(Rule::kAtomicStatusNotRead, here,
            "the status of the " + name_of(status_unread_->command) + " before it, issued at " +
@@ -317,7 +325,8 @@ void Checker::check_line_command(const dma::MfcCommand& command) {
   if (command.opcode() == MfcOpcode::putllc &&
       !(reservation_ && same_line(reservation_->command.ea, command.ea)))
     report(Rule::kPutllcWithoutReservation, here, "no getllar of this line came before it", command);
-  check_local_range(command, line, command.opcode() == MfcOpcode::getllar);
+  for (const MovedRange& range : line.ranges) check_local_range(command, range, line.writes_local_store);
+  check_overlaps(line);  // it does not wait for the queue
   end_reservation(command);
 }
 
@@ -414,7 +423,8 @@ void Checker::end_run() {
            reservation_->command);
   }
   for (const CommandInFlight& command : in_flight_.all()) {
-    if (command.command.kind() == CommandKind::kOrdering) continue;
+    // A cache command has no results of the program's.
+    if (command.command.kind() == CommandKind::kOrdering || !command.moves_local_store()) continue;
     report(Rule::kCommandsOutstanding, command.issued_at, "the program ends without a wait for its tag",
            command.command);
   }

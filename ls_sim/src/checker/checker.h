@@ -126,7 +126,8 @@ class Checker final : public ChannelPort, public AccessObserver {
   void check_load(const Access& access);
   void report_undefined(const ExecutedInstruction& instruction);
   void check_ranges(CommandInFlight& command);
-  void check_line_command(const dma::MfcCommand& command);
+  void check_overlaps(const CommandInFlight& command);
+  void check_line_command(const CommandInFlight& line);
   void check_local_range(const dma::MfcCommand& command, const MovedRange& range, bool is_get);
   void end_reservation(const dma::MfcCommand& by);
   void complete(std::uint32_t tags);
