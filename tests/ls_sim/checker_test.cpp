@@ -328,6 +328,17 @@ TEST_F(CheckerTest, BytesFromOutsideCountAsWritten) {
   EXPECT_EQ(rules(), Texts{"load-never-written"});
 }
 
+TEST_F(CheckerTest, BytesThatThePpuSideWritesByAPointerCountAsWritten) {
+  std::memset(&local_store_.bytes()[buffer_], std::to_integer<int>(kFiller), 128);
+  local_store_.bytes()[buffer_ + 20] = std::byte{1};
+  checker_.on_shared();
+  load(buffer_ + 16, 4);  // the filler, in a quadword that was written
+  load(buffer_ + 20, 1);
+  EXPECT_EQ(rules(), Texts{});
+  load(buffer_ + 32, 4);
+  EXPECT_EQ(rules(), Texts{"load-never-written"});
+}
+
 TEST_F(CheckerTest, OutsideObjectsKnowsVariablesAndTheStackPointer) {
   store(buffer_, 128);
   store(dma::kLocalStoreBytes - 512, 512);

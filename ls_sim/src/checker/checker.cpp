@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "softcell/base/assert.h"
+#include "softcell/ls_sim/local_store.h"
 #include "softcell/ls_sim/trace.h"
 
 namespace softcell::ls_sim {
@@ -129,7 +130,7 @@ void Checker::on_instruction(const ExecutedInstruction& instruction) {
   const std::uint32_t lsa = instruction.address.value;
   mark_changed_words();
   const bool is_code = lsa >= image_->text_begin && lsa < image_->text_end;
-  if (!is_code && !written_.any(lsa, 4)) {
+  if (!is_code && !is_written(lsa, 4)) {
     report(
         Rule::kJumpOutsideCode, instruction.address,
         "it executes LSA " + hex(lsa) + ", which is no code of the program, nor has the program written it");
@@ -168,6 +169,7 @@ void Checker::report_undefined(const ExecutedInstruction& instruction) {
 
 UndefinedBits Checker::undefined_bits(dma::LocalStoreAddress quadword) {
   UndefinedBits bits;
+  if (is_shared_.load(std::memory_order_relaxed)) find_unseen_writes(quadword.value, dma::kQuadwordBytes);
   for (std::uint32_t i = 0; i < bits.size(); ++i) bits[i] = written_.undefined(quadword.value + i);
   return bits;
 }
@@ -203,6 +205,29 @@ void Checker::on_access(const Access& access) {
   mark_unsynced({.lsa = access.lsa.value, .bytes = access.bytes}, access.instruction);
 }
 
+bool Checker::is_written(std::uint32_t lsa, std::uint32_t bytes) {
+  if (written_.any(lsa, bytes)) return true;
+  if (!is_shared_.load(std::memory_order_relaxed)) return false;
+  find_unseen_writes(lsa, bytes);
+  return written_.any(lsa, bytes);
+}
+
+/// A quadword of which a byte that is not known as written is no longer as the load of the image has left it. (After a run it may be
+/// the last program's; then this finds too little, but nothing wrong.)
+void Checker::find_unseen_writes(std::uint32_t lsa, std::uint32_t bytes) {
+  const std::uint32_t end = std::min(lsa + bytes, dma::kLocalStoreBytes);
+  for (std::uint32_t begin = lsa / dma::kQuadwordBytes * dma::kQuadwordBytes; begin < end;
+       begin += dma::kQuadwordBytes) {
+    bool is_changed = false;
+    for (std::uint32_t at = begin; at < begin + dma::kQuadwordBytes; ++at)
+      is_changed = is_changed || (!written_.any(at, 1) && to_.local_store[at] != kFiller);
+    if (!is_changed) continue;
+    for (std::uint32_t at = begin; at < begin + dma::kQuadwordBytes; ++at) {
+      if (!written_.any(at, 1)) written_.mark_external(at, 1);
+    }
+  }
+}
+
 void Checker::check_store(const Access& access) {
   const std::uint32_t lsa = access.lsa.value;
   if (reservation_ && lsa < reservation_->command.lsa.value + dma::kLineBytes &&
@@ -230,7 +255,7 @@ void Checker::check_load(const Access& access) {
   // load of which some bytes were written takes padding along. Of a program with a heap bytes are followed to where
   // they matter: it stores to part of a quadword by loading it first.
   if (runs_spu_program() && image_->main == 0) return;
-  if (objects_->in_stack(access.lsa.value) || written_.any(access.lsa.value, access.bytes)) return;
+  if (objects_->in_stack(access.lsa.value) || is_written(access.lsa.value, access.bytes)) return;
   report(Rule::kLoadNeverWritten, access.instruction,
          describe(access) + ": this job has not written these bytes");
 }
@@ -301,7 +326,7 @@ void Checker::check_local_range(const dma::MfcCommand& command, const MovedRange
     // By quadwords, as the SPU stores. Where variables on the stack have their padding is not known.
     const std::uint32_t step = objects_->in_stack(range.lsa) ? range.bytes : dma::kQuadwordBytes;
     for (std::uint32_t done = 0; done < range.bytes; done += step) {
-      if (written_.any(range.lsa + done, std::min(step, range.bytes - done))) continue;
+      if (is_written(range.lsa + done, std::min(step, range.bytes - done))) continue;
       report(Rule::kPutNeverWritten, here,
              objects_->describe(range.lsa + done) + ": this job has not written these bytes", command);
       break;

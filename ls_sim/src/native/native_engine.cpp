@@ -22,6 +22,7 @@
 #include "softcell/base/assert.h"
 #include "softcell/dma/local_store_bytes.h"
 #include "softcell/ls_sim/engine.h"
+#include "softcell/ls_sim/local_store.h"
 
 namespace softcell::ls_sim {
 
@@ -40,7 +41,6 @@ namespace {
 using native::KernelContext;
 using native::Operation;
 
-constexpr std::byte kFiller{0xA5};
 constexpr bool is_filler(std::byte b) { return b == kFiller; }
 constexpr std::uint32_t kCanaryBytes = 256;  // watched below the declared stack
 // Of the gate's frame: its caller's frame pointer and return address.
