@@ -30,6 +30,18 @@ TEST(RunVerb, RunsAProgramAndSaysWhatItDid) {
       << run.output;
 }
 
+TEST(RunVerb, CountsWhatContextsHaveMovedThatTheProgramHasNotDestroyed) {
+  const ScratchFolder folder;
+  for (const std::string way : {" 0", " 0 keeps"}) {
+    const CommandResult run = run_softcell("run --json " + (folder / "r.json") + " -- " + kForgets + way);
+    EXPECT_EQ(run.status, 0) << run.output;
+    std::ifstream file(folder / "r.json");
+    const auto json = nlohmann::json::parse(file);
+    EXPECT_EQ(json["report"]["dma_commands"], 1) << way << ": " << run.output;
+    EXPECT_EQ(json["report"]["dma_bytes"], 64) << way;
+  }
+}
+
 TEST(RunVerb, EndsAsTheProgramDoes) {
   EXPECT_EQ(run_softcell("run -- " + kForgets + " 17").status, 17);
   EXPECT_EQ(run_softcell("run -- sh -c 'kill -9 $$'").status, 137);
