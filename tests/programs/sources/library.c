@@ -32,6 +32,8 @@ static void numbers(void) {
   CHECK(strtol("  -0x1Fz", &end, 0) == -31 && *end == 'z' && atoi("42") == 42);
   CHECK(strtol("99999999999", NULL, 10) == LONG_MAX && strtoul("4294967295", NULL, 10) == ULONG_MAX);
   CHECK(strtol("-2147483648", NULL, 10) == LONG_MIN && strtoll("-12345678901", NULL, 10) == -12345678901ll);
+  CHECK(strtof("0.1", NULL) == 0.1f && strtof("-16777219", NULL) == -16777220 && strtof("16777217", NULL) == 16777216);
+  CHECK(strtof("1.1754944e-38", NULL) == 0x1p-126f && strtof("1e-39", NULL) == 0 && strtof("3.4028235e38", NULL) == 0x1.FFFFFEp127f);
   srand(5);
   for (int i = 0; i < 50; ++i) values[i] = rand() % 1000;
   qsort(values, 50, sizeof values[0], by_value);
