@@ -75,6 +75,16 @@ TEST(ToolchainOptions, WithoutMeaningAreKeptForOneNote) {
   EXPECT_TRUE(options.compiler.empty());
 }
 
+TEST(ToolchainOptions, NameNoInputAsTheOutput) {
+  const tests::ScratchFolder scratch;
+  const std::string source = scratch.path().string() + "/a.c";
+  std::ofstream(source) << "int main(void) { return 0; }\n";
+  EXPECT_EQ(refusal({source, "-o", scratch.path().string() + "/./a.c"}),
+            "-o " + scratch.path().string() + "/./a.c: this file is an input, too");
+  EXPECT_EQ(refusal({"-c", source, "-o", scratch.path().string() + "/a.o"}), "");
+  EXPECT_EQ(refusal({"-x", "c", "-c", "/dev/null", "-o", "/dev/null"}), "") << "as scripts ask for an option";
+}
+
 TEST(ToolchainOptions, TakeLibrariesWhereTheyStand) {
   const tests::ScratchFolder scratch;
   const std::string folder = scratch.path().string();

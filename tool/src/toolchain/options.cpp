@@ -9,6 +9,7 @@
 #include <iterator>
 #include <stdexcept>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 namespace softcell::toolchain {
@@ -281,6 +282,12 @@ class Parser {
                                Input{*file, {}});
     }
     if (options_.inputs.empty()) throw std::invalid_argument("there are no input files");
+    for (const Input& input : options_.inputs) {
+      std::error_code none_there;
+      if (options_.output && std::filesystem::is_regular_file(input.file, none_there) &&
+          std::filesystem::equivalent(input.file, *options_.output, none_there))
+        throw std::invalid_argument("-o " + *options_.output + ": this file is an input, too");
+    }
     const bool one_output = options_.output && options_.step != Step::kLink && !options_.relocatable;
     const auto sources =
         std::ranges::count_if(options_.inputs, [](const Input& i) { return i.language.has_value(); });
