@@ -35,6 +35,10 @@ TEST(ToolchainOptions, SayHowFarTheCompilerGoes) {
   EXPECT_EQ(parsed({"-M", "a.c"}).step, Step::kDependencies);
   EXPECT_EQ(parsed({"-MM", "-c", "a.c"}).step, Step::kDependencies);
   EXPECT_EQ(parsed({"-MD", "-c", "a.c"}).step, Step::kCompile);
+  EXPECT_EQ(parsed({"-fsyntax-only", "-c", "a.c"}).step, Step::kCheck);
+  EXPECT_EQ(parsed({"-c", "-fsyntax-only", "a.c"}).step, Step::kCheck);
+  EXPECT_EQ(parsed({"-E", "-fsyntax-only", "a.c"}).step, Step::kPreprocess);
+  EXPECT_EQ(parsed({"-dM", "-E", "a.c"}).macros, Words{"-dM"});
   EXPECT_EQ(parsed({"-oprogram", "a.c"}).output, "program");
   EXPECT_EQ(parsed({"-o", "program", "a.c"}).output, "program");
   EXPECT_TRUE(parsed({"-r", "a.o", "b.o"}).relocatable);

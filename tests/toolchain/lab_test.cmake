@@ -17,6 +17,10 @@ says(0 "finding: SPE 0, kernel scale, more_help.cpp:5: load-in-flight" ${CMAKE_C
 
 # Other ways to call the commands.
 set(gcc ${BIN}/softcell-spu-gcc)
+says(0 "version" ${gcc} -v)
+says(0 "#define __SPU__ 1\n" sh -c "${gcc} -E -dM -x c /dev/null")
+says(1 "undeclared" sh -c "printf 'int a = undeclared\\073\n' | ${gcc} -fsyntax-only -x c -")
+says(0 "^$" sh -c "cd ${lab} && ${gcc} -fsyntax-only -Ispu -DFACTOR=2 spu/main.c && test ! -e a.out -a ! -e main.o")
 says(0 "^spu\n$" ${gcc} -dumpmachine)
 says(0 "softcell-spu-gcc \\(softcell\\)" ${gcc} --version)
 says(0 "stack-size=BYTES" ${gcc} --help)

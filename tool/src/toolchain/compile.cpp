@@ -108,6 +108,7 @@ void preprocess(const Options& options, const Places& places) {
     Words command = command_of(*input.language, false, places);
     append(command, options.preprocessor);
     append(command, options.compiler);
+    if (options.step == Step::kPreprocess) append(command, options.macros);
     if (options.step == Step::kPreprocess) command.push_back("-E");
     command.push_back(input.file);
     if (options.output) append(command, {"-o", *options.output});

@@ -124,10 +124,13 @@ class Parser {
     } else if (word.starts_with("-x")) {
       take_language(value(word, "-x"));
     } else if (word == "-c") {
-      options_.step =
-          std::max(options_.step == Step::kLink ? Step::kCompile : options_.step, Step::kDependencies);
+      options_.step = std::min(options_.step, Step::kCompile);
     } else if (word == "-E") {
-      options_.step = Step::kPreprocess;
+      if (options_.step != Step::kDependencies) options_.step = Step::kPreprocess;
+    } else if (word == "-fsyntax-only") {
+      options_.step = std::min(options_.step, Step::kCheck);
+    } else if (is_any(word, "-dM", "-dD", "-dN", "-dI", "-dU")) {
+      options_.macros.push_back(word);
     } else if (word == "-S") {
       throw std::invalid_argument(
           "-S: there are no SPU instructions here, the program runs on the PC's processor; a real spu-gcc "
