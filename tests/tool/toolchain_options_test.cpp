@@ -69,6 +69,12 @@ TEST(ToolchainOptions, GoToTheStepThatTheyAreFor) {
   EXPECT_TRUE(options.meaningless.empty());
 }
 
+TEST(ToolchainOptions, ThatChangeResultsGoToTheCompiler) {
+  const Options options = parsed({"-fsingle-precision-constant", "-fshort-wchar", "-fshort-enums", "a.c"});
+  EXPECT_EQ(options.compiler, (Words{"-fsingle-precision-constant", "-fshort-wchar", "-fshort-enums"}));
+  EXPECT_TRUE(options.meaningless.empty());
+}
+
 TEST(ToolchainOptions, WithoutMeaningAreKeptForOneNote) {
   const Options options =
       parsed({"-O3", "-g", "-pipe", "-funroll-loops", "-mfixed-range=80-127", "-std=c++98", "-T", "script.ld",

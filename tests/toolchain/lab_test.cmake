@@ -36,6 +36,10 @@ says(0 "elf32-x86-64" ${BIN}/softcell-spu-objdump -h ${lab}/by_ld)
 file(WRITE ${lab}/options "-c -I${lab}/spu\n'-DFACTOR=4'  ${lab}/spu/more_help.cpp -o ${lab}/from_file.o")
 step("options from a file" ${gcc} @${lab}/options)
 
+file(WRITE ${lab}/constant.c "int main(void) { return sizeof(L'a'); }\n")
+step("an option that changes the language" ${gcc} -fshort-wchar ${lab}/constant.c -o ${lab}/constant)
+says(1 "ended with status 2" ${BIN}/softcell spu run ${lab}/constant)
+
 # What cannot be done is said in one sentence.
 file(WRITE ${lab}/code.s "il $3, 1\n")
 file(WRITE ${lab}/wrong.c "int main(void) { return undeclared; }\n")

@@ -175,7 +175,7 @@ class Parser {
     return is_any(word, "-fsigned-char", "-funsigned-char", "-fno-strict-aliasing", "-fstrict-aliasing",
                   "-fwrapv", "-fpermissive", "-fcommon", "-fno-common", "-fgnu89-inline", "-fms-extensions",
                   "-fplan9-extensions", "-fshort-enums", "-fno-short-enums", "-fsigned-bitfields",
-                  "-funsigned-bitfields") ||
+                  "-funsigned-bitfields", "-fsingle-precision-constant", "-fshort-wchar") ||
            starts_with_any(word, "-fpack-struct", "-fmax-errors", "-fdiagnostics", "-ftemplate-depth");
   }
 
