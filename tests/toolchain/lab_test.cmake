@@ -40,6 +40,12 @@ file(WRITE ${lab}/constant.c "int main(void) { return sizeof(L'a'); }\n")
 step("an option that changes the language" ${gcc} -fshort-wchar ${lab}/constant.c -o ${lab}/constant)
 says(1 "ended with status 2" ${BIN}/softcell spu run ${lab}/constant)
 
+says(0 "^$" sh -c "printf '#include \"spu/help.h\"\nint main(void) { return 7\\073 }\n' | ${gcc} -I${lab} -x c - -o ${lab}/of_input")
+says(1 "ended with status 7" ${BIN}/softcell spu run --checked ${lab}/of_input)
+file(WRITE ${lab}/unchecked.c "#ifdef SOFTCELL_CHECKED\nint nowhere(void);\n#else\nint nowhere(void) { return 0; }\n#endif\n"
+  "int main(void) { return nowhere(); }\n")
+says(0 "undefined[^\n]*nowhere.*gets no checked flavour: it does not link\n$" ${gcc} ${lab}/unchecked.c -o ${lab}/unchecked)
+
 # What cannot be done is said in one sentence.
 file(WRITE ${lab}/code.s "il $3, 1\n")
 file(WRITE ${lab}/wrong.c "int main(void) { return undeclared; }\n")

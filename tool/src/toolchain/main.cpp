@@ -70,6 +70,7 @@ int gcc(const std::string& command, const Words& words, Language language) {
     return 0;
   }
   ScratchFolder scratch;
+  keep_standard_input(options, scratch);
   Words files;
   for (const Input& input : options.inputs) {
     if (!input.language) {
