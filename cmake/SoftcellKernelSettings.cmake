@@ -65,7 +65,14 @@ if(NOT SOFTCELL_COMPILER_HEADERS)
   set_property(GLOBAL PROPERTY SOFTCELL_COMPILER_HEADERS ${SOFTCELL_COMPILER_HEADERS})
 endif()
 set(SOFTCELL_PROGRAM_FLAGS -ffunction-sections -fdata-sections -D__SPU__ -nostdinc
-  -isystem${SOFTCELL_SDK_DIR}/library/include -isystem${SOFTCELL_COMPILER_HEADERS})  # joined: CMake drops a second -isystem
+  -isystem${SOFTCELL_SDK_DIR}/library/include -isystem${SOFTCELL_COMPILER_HEADERS}  # joined: CMake drops a second -isystem
+  # There is no operating system in a local store, by which portable sources choose.
+  -Ulinux -U__linux -U__linux__ -U__gnu_linux__ -Uunix -U__unix -U__unix__
+  # There is one thread, whose variables are variables like any other. (The compiler would look for them in memory of the host's thread.)
+  -D__thread= -D_Thread_local=)
+# In C++ the word may stand alone in a function, where it means static.
+set(SOFTCELL_PROGRAM_CXX_FLAGS -Werror=return-type
+  "-Dthread_local=_Pragma(\"GCC error \\\"one thread runs in a local store: leave out thread_local, or in a function write static\\\"\")")
 # Of a C source that softcell_vector_casts has rewritten: lines are those of the source, columns are not.
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   set(SOFTCELL_C_REWRITTEN_FLAGS -fno-diagnostics-show-caret)
@@ -74,6 +81,8 @@ else()
 endif()
 set(SOFTCELL_C_FLAGS ${SOFTCELL_KERNEL_FLAGS})
 list(REMOVE_ITEM SOFTCELL_C_FLAGS -std=c++17 -fno-exceptions -fno-rtti -fno-builtin -Wextra -Wshadow)
+# As the SPU's compilers do it: variables without a value that several sources define are one, as old C has it.
+list(APPEND SOFTCELL_C_FLAGS -fcommon)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   list(REMOVE_ITEM SOFTCELL_C_FLAGS -ffreestanding)  # GCC's main is then no special function, and returns nothing by itself
   list(APPEND SOFTCELL_C_FLAGS -fno-builtin -maddress-mode=long -Wno-main)

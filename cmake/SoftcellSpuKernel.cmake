@@ -34,7 +34,7 @@ function(softcell_compile_spu_sources target)
     list(APPEND SOFTCELL_KERNEL_FLAGS -Werror)
   endif()
   if(arg_PROGRAM)
-    list(APPEND SOFTCELL_KERNEL_FLAGS ${SOFTCELL_PROGRAM_FLAGS} -Werror=return-type)
+    list(APPEND SOFTCELL_KERNEL_FLAGS ${SOFTCELL_PROGRAM_FLAGS} ${SOFTCELL_PROGRAM_CXX_FLAGS})
   endif()
   add_library(${target} OBJECT ${arg_SOURCES})
   # The project's own flags come first on the command line; these win over them.
@@ -116,12 +116,16 @@ function(softcell_link_spu_image name)
   # A program begins in its library, which calls main.
   set(program 0)
   set(library)
+  set(check_definitions)
+  list(TRANSFORM arg_OBJECTS REPLACE "(.+)" "$<TARGET_OBJECTS:\\1>" OUTPUT_VARIABLE objects)
   if(arg_LIBRARY)
     set(program 1)
+    # Its functions win over the library's of the same name (muldefs). That it has none twice itself is seen when its objects are linked alone.
+    set(check_definitions COMMAND ${SOFTCELL_KERNEL_LINKER} -m elf32_x86_64 -r -o ${arg_IMAGE}.objects ${objects} ${arg_OBJECT_FILES})
     set(library -e softcell_start --gc-sections -z muldefs -u softcell_start $<TARGET_FILE:${arg_LIBRARY}>)
   endif()
-  list(TRANSFORM arg_OBJECTS REPLACE "(.+)" "$<TARGET_OBJECTS:\\1>" OUTPUT_VARIABLE objects)
   add_custom_command(OUTPUT ${arg_IMAGE}
+    ${check_definitions}
     COMMAND sh ${SOFTCELL_LINK_IMAGE} ${name} ${arg_IMAGE} ${begin} ${arg_STACK_BYTES} ${arg_BUDGET_BYTES} ${CMAKE_COMMAND} ${CMAKE_NM}
       ${SOFTCELL_KERNEL_LINKER} -m elf32_x86_64 -pie --no-dynamic-linker -T ${SOFTCELL_SDK_DIR}/ls.ld
       --defsym softcell_stack_bytes=${arg_STACK_BYTES}
@@ -161,7 +165,10 @@ macro(softcell_add_spu_program name c_sources)
       if(NOT TARGET softcell_report_accesses)
         softcell_compile_spu_sources(softcell_report_accesses SOURCES ${SOFTCELL_SDK_DIR}/checked/report_accesses.cpp)
       endif()
-      set(objects softcell_report_accesses)
+      if(NOT TARGET softcell_report_atomics)
+        softcell_compile_spu_sources(softcell_report_atomics SOURCES ${SOFTCELL_SDK_DIR}/checked/report_atomics.cpp)
+      endif()
+      set(objects softcell_report_accesses softcell_report_atomics)
     endif()
     softcell_program_library(softcell_program_library${suffix} ${cpp_flags})
     if(cpp_sources)

@@ -4,6 +4,7 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <iterator>
 #include <stdexcept>
 
@@ -218,9 +219,10 @@ std::variant<std::byte*, Fault> AddressSpace::resolve(EffectiveAddress ea, std::
         .detail = buffer + " lies in video memory; put results to main memory, the PPU uploads them"};
   }
   if (!mapping.contains(ea, bytes)) {
+    const std::uint64_t offset = ea.value - mapping.ea.value, own = allocated_bytes;
     return Fault{.rule = Rule::kEaCrossesBuffer,
-                 .detail = std::to_string(mapping.bytes - (ea.value - mapping.ea.value)) + " of " +
-                           byte_count(bytes) + " lie in " + buffer + ", the rest behind its end"};
+                 .detail = std::to_string(own - std::min(offset, own)) + " of " + byte_count(bytes) +
+                           " lie in " + buffer + ", the rest behind its end"};
   }
   if (!mapping.permits(wanted)) {
     const bool reads = allows(wanted, SpeAccess::kRead) && !allows(mapping.spe_access, SpeAccess::kRead);

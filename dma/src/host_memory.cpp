@@ -151,8 +151,8 @@ std::optional<Fault> HostMemory::check_allocation(EffectiveAddress ea, std::uint
   }
   if (bytes > usable - offset) {
     return Fault{.rule = Rule::kEaOutsideAllocation,
-                 .detail = std::to_string(usable - offset) + " of " + byte_count(bytes) + " lie in " + what +
-                           ", the rest behind its end"};
+                 .detail = std::to_string(block->bytes - std::min(offset, block->bytes)) + " of " +
+                           byte_count(bytes) + " lie in " + what + ", the rest behind its end"};
   }
   return std::nullopt;
 }

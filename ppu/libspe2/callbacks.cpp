@@ -11,8 +11,6 @@ namespace softcell::libspe2 {
 namespace {
 
 constexpr unsigned int kCallbacks = 256;
-/// The first numbers are those of the C library, POSIX and others that SPU programs bring. [libspe2] documented
-constexpr unsigned int kLibraries = 4;
 
 std::atomic<void*>& slot(unsigned int callnum) {
   static std::array<std::atomic<void*>, kCallbacks> slots{};

@@ -51,7 +51,7 @@ spe_context_ptr_t create(unsigned int flags, spe_context* neighbour, std::shared
 }  // namespace
 
 spe_context::~spe_context() {
-  if (spe != nullptr) Machine::get().count_statistics(spe->statistics());
+  if (spe != nullptr) Machine::get().count_last(*spe);
   if (gang == nullptr) return;
   if ((flags & SPE_AFFINITY_MEMORY) != 0) gang->has_memory_affinity = false;
   gang->contexts.fetch_sub(1);

@@ -6,8 +6,10 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <stdexcept>
 #include <string>
 
+#include "object.h"
 #include "registers.h"
 #include "softcell/base/json_text.h"
 #include "softcell/base/whole_file.h"
@@ -80,7 +82,9 @@ void Machine::report(const dma::Fault& fault) {
   faults_.add(counted);
 }
 
-void Machine::count_statistics(const ls_sim::SpeStatistics& statistics) {
+void Machine::count_last(ls_sim::SpeContext& context) {
+  if (!context.state().runs) context.give_up();
+  const ls_sim::SpeStatistics statistics = context.statistics();
   commands_.fetch_add(statistics.dma.commands(), std::memory_order_relaxed);
   bytes_.fetch_add(statistics.dma.bytes(), std::memory_order_relaxed);
 }
@@ -115,6 +119,7 @@ void Machine::at_exit() {
   if (machine.is_ending_.exchange(true)) return;
   try {
     machine.end_runs();
+    machine.count_contexts();
     machine.print_findings();
     machine.write_trace();
     const std::lock_guard lock(machine.report_mutex_);
@@ -135,6 +140,17 @@ void Machine::end_runs() {
   contexts_->interrupt_all();
   const auto until = std::chrono::steady_clock::now() + kEndOfRuns;
   contexts_->wait([this] { return contexts_->none_runs_in_wait(); }, until);
+}
+
+/// Of contexts that the program has left to its end.
+void Machine::count_contexts() {
+  Objects<spe_context>::all().for_each([this](spe_context& context) {
+    if (context.spe == nullptr) return;
+    try {
+      count_last(*context.spe);
+    } catch (const std::logic_error&) {  // a thread runs it again, meanwhile
+    }
+  });
 }
 
 void Machine::print_findings() const {

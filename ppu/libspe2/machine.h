@@ -46,13 +46,14 @@ class Machine {
   /// A run has ended, and report() has been told of its fault. The report is brought up to date with what was found: a
   /// program may end without its exit handlers, by _exit() or a signal.
   void end_run();
-  /// Adds up what a context has moved that is about to go.
-  void count_statistics(const ls_sim::SpeStatistics& statistics);
+  /// Adds up what a context has moved that is about to go. One that has stopped does not go on.
+  void count_last(ls_sim::SpeContext& context);
 
  private:
   Machine();
   static void at_exit();
   void end_runs();
+  void count_contexts();
   void print_findings() const;
   void write_trace() const;
   enum class Report { kSoFar, kWhole };

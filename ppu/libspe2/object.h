@@ -94,6 +94,11 @@ class Objects {
     }
     return nullptr;
   }
+  template <class Work>
+  void for_each(Work&& work) {
+    const std::lock_guard lock(mutex_);
+    for (const auto& [key, object] : objects_) work(*object);
+  }
   /// @return  null: there was none.
   std::shared_ptr<Object> remove(const void* key) {
     const std::lock_guard lock(mutex_);

@@ -119,6 +119,15 @@ EntryArguments arguments_of(spe_context_ptr_t spe, unsigned int flags, void* arg
   return arguments;
 }
 
+void complain_of_call(std::uint32_t callnum) {
+  // Calls of the C library do not come here if the word behind the stop names one.
+  const bool is_of_library = callnum < softcell::libspe2::kLibraries;
+  Machine::complain("an SPE program calls the PPU side by number " + std::to_string(callnum) +
+                    (is_of_library
+                         ? ", which is the C library's, and names no function that softcell has"
+                         : ", for which spe_callback_handler_register() has registered no handler"));
+}
+
 /// Calls the PPU side as long as the program asks for it.
 /// @return  the first stop that is no call, or the failure of a call.
 Outcome answer_calls(spe_context& context, ContextStop& stop, bool callbacks) {
@@ -128,9 +137,7 @@ Outcome answer_calls(spe_context& context, ContextStop& stop, bool callbacks) {
     if (!asks || !callbacks) return outcome_of(stop.result);
     const std::uint32_t callnum = code & kCallnumMask;
     auto* const callback = softcell::libspe2::callback_of(callnum);
-    if (callback == nullptr)
-      Machine::complain("an SPE program calls the PPU side by number " + std::to_string(callnum) +
-                        ", for which spe_callback_handler_register() has registered no handler");
+    if (callback == nullptr) complain_of_call(callnum);
     const int result = callback == nullptr
                            ? kNoHandler
                            : callback(context.problem_state().local_store().data(), stop.assist.value);

@@ -235,8 +235,7 @@ void serve(const std::shared_ptr<Group>& group) {
         until);
   }
   for (const auto& thread : group->threads) {
-    thread->context->give_up();
-    Machine::get().count_statistics(thread->context->statistics());
+    Machine::get().count_last(*thread->context);
   }
   const std::lock_guard lock(lv2.mutex);
   group->runs = false;

@@ -20,13 +20,30 @@ using namespace softcell::psl1ght;
 
 namespace {
 
+using softcell::dma::Rule;
 using softcell::libspe2::Objects;
 using softcell::ls_sim::ContextStop;
 
 constexpr u32 kClasses = 3, kClassOfMailboxes = 2;
-constexpr u64 kMailboxInterrupt = 1, kStopInterrupt = 2;
+constexpr u64 kMailboxInterrupt = 1, kStopInterrupt = 2, kHaltInterrupt = 4;
 // SPU_Status [CBEA] documented
-constexpr u32 kRunning = 1, kStopped = 2, kHalted = 4, kCodeShift = 16;
+constexpr u32 kRunning = 1, kStopped = 2, kHalted = 4, kIllegalInstruction = 0x20, kIllegalChannel = 0x40,
+              kCodeShift = 16;
+
+/// Why the SPU has stopped by itself; 0: something else has stopped it.
+u32 status_of(const softcell::ls_sim::RunResult& result) {
+  if (!result.fault) return result.stop_code << kCodeShift | kStopped;
+  switch (result.fault->rule) {
+    case Rule::kKernelHalt:
+      return kHalted;
+    case Rule::kIllegalInstruction:
+      return kIllegalInstruction;
+    case Rule::kIllegalChannel:
+      return kIllegalChannel;
+    default:
+      return 0;
+  }
+}
 
 /// @return  null: there is none with that number
 std::shared_ptr<RawSpu> find(u32 number) {
@@ -53,17 +70,19 @@ void run(RawSpu& spu, bool goes_on) {
   } catch (const std::exception& error) {
     Machine::complain(error.what());
   }
+  const u32 status = status_of(stop.result);
   bool told_to = false;
   {
     const std::lock_guard lock(lv2.mutex);
     told_to = std::exchange(spu.stopping, false);
-    spu.status = stop.result.fault ? kHalted : stop.result.stop_code << kCodeShift | kStopped;
+    spu.status = status;
     spu.goes_on = stop.goes_on;
     spu.next_pc = stop.next.value;
     spu.runs = false;
     lv2.changed.notify_all();
   }
-  if (stop.result.fault && !told_to) report_fault(*stop.result.fault, false);
+  // lv2 has no exceptions of raw SPUs: the program finds the SPU's own in its status.
+  if (stop.result.fault && !told_to) report_fault(*stop.result.fault, status != 0);
 }
 
 void start(RawSpu& spu) {
@@ -196,6 +215,7 @@ s32 sysSpuRawGetIntStat(sys_raw_spu_t number, u32 classid, u64* stat) {
     if (spu.context->spe->state().out_intr_mbox != 0) *stat |= kMailboxInterrupt;
     const std::lock_guard lock(Lv2::get().mutex);
     if ((spu.status & kStopped) != 0) *stat |= kStopInterrupt;
+    if ((spu.status & kHalted) != 0) *stat |= kHaltInterrupt;
     return kOk;
   });
 }

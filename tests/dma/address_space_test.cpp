@@ -123,6 +123,9 @@ TEST(AddressSpace, FaultsWhenATransferCrossesTheEndOfABuffer) {
   host(space.resolve(a + 128, 128, SpeAccess::kRead));
   expect_fault(space.resolve(a + 128, 144, SpeAccess::kRead), Rule::kEaCrossesBuffer,
                "128 of 144 bytes lie in buffer 'a' (256 bytes at 0x5EA010000000)");
+  const EffectiveAddress odd = space.allocate("odd", 8);
+  expect_fault(space.resolve(odd, 128, SpeAccess::kRead), Rule::kEaCrossesBuffer,
+               "8 of 128 bytes lie in buffer 'odd' (8 bytes at");
 }
 
 // Otherwise the last 4 of 100 bytes could not be fetched by any legal command.
@@ -130,7 +133,7 @@ TEST(AddressSpace, LetsATransferReachTheQuadwordThatABufferEndsIn) {
   AddressSpace space;
   const EffectiveAddress ea = space.allocate("a", 100);
   host(space.resolve(ea, 112, SpeAccess::kRead));
-  expect_fault(space.resolve(ea, 128, SpeAccess::kRead), Rule::kEaCrossesBuffer, "112 of 128 bytes");
+  expect_fault(space.resolve(ea, 128, SpeAccess::kRead), Rule::kEaCrossesBuffer, "100 of 128 bytes");
 }
 
 TEST(AddressSpace, FaultsOutsideOfBuffersAndSaysWhereThatIs) {

@@ -322,6 +322,15 @@ TEST(SpeCallback, ACallThatNobodyAnswersIsAnErrorOrWithoutCallbacksAStop) {
   EXPECT_EQ(context.stop.spu_status, 0x2110 << 16 | 2);
 }
 
+TEST(SpeCallback, ACallOfTheCLibraryThatNamesNoFunctionIsNoMatterOfHandlers) {
+  Context context(&breaks_rules);
+  testing::internal::CaptureStderr();
+  EXPECT_FAILS(context.run(10, 0), EFAULT);
+  EXPECT_EQ(testing::internal::GetCapturedStderr(),
+            "softcell: an SPE program calls the PPU side by number 1, which is the C library's, and names no "
+            "function that softcell has\n");
+}
+
 // ---- mailboxes and signals
 
 TEST(SpeMailbox, ChecksItsArguments) {

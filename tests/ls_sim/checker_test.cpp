@@ -256,6 +256,65 @@ TEST_F(CheckerTest, TransfersOfTheSameMainStorageOverlapWhenOneIsAPut) {
   EXPECT_EQ(rules(), Texts{"transfers-overlap"});
 }
 
+TEST_F(CheckerTest, LineCommandsDoNotWaitForTransfersOfTheirBytes) {
+  constexpr std::uint32_t kStatus = 27;
+  store(buffer_, 128);
+  store(out_, 128);
+  const auto line_command = [&](MfcOpcode opcode, std::uint32_t lsa, std::uint64_t ea) {
+    issue(opcode, lsa, ea, 0, 0);
+    checker_.read(kStatus);
+  };
+  issue(MfcOpcode::put, buffer_, kEa, 128, 1);
+  line_command(MfcOpcode::getllar, out_, kEa + 128);  // other bytes
+  line_command(MfcOpcode::putllc, out_, kEa + 128);
+  EXPECT_EQ(rules(), Texts{});
+  line_command(MfcOpcode::getllar, buffer_, kEa + 128);
+  line_command(MfcOpcode::getllar, out_, kEa);
+  line_command(MfcOpcode::putlluc, out_, kEa);
+  wait_for(1);
+  EXPECT_EQ(rules(), Texts{"transfers-overlap"});
+  EXPECT_EQ(findings_.list().front().count, 3u);
+  issue(MfcOpcode::get, buffer_, kEa, 128, 1);
+  line_command(MfcOpcode::putlluc, buffer_, kEa + 128);
+  wait_for(1);
+  EXPECT_EQ(findings_.list().front().count, 4u);
+  line_command(MfcOpcode::getllar, buffer_, kEa);
+  EXPECT_EQ(findings_.list().front().count, 4u) << "after the wait";
+}
+
+TEST_F(CheckerTest, LockThatIsGivenUpByAQueuedCommandMayBeTakenAgain) {
+  constexpr std::uint32_t kStatus = 27;
+  store(buffer_, 128);
+  store(out_, 128);
+  issue(MfcOpcode::putqlluc, buffer_, kEa, 0, 1);
+  issue(MfcOpcode::getllar, out_, kEa, 0, 0);
+  checker_.read(kStatus);
+  issue(MfcOpcode::putllc, out_, kEa, 0, 0);
+  checker_.read(kStatus);
+  EXPECT_EQ(rules(), Texts{});
+  issue(MfcOpcode::getllar, buffer_, kEa, 0, 0);
+  checker_.read(kStatus);
+  EXPECT_EQ(rules(), Texts{"transfers-overlap"}) << "its copy of the line";
+}
+
+TEST_F(CheckerTest, ZerosOverTheLinesOfATransferOverlapIt) {
+  store(buffer_, 128);
+  issue(MfcOpcode::sdcrz, 0, kEa, 256, 1);
+  issue(MfcOpcode::put, buffer_, kEa + 256, 128, 1);
+  issue(MfcOpcode::get, out_, kEa + 512, 128, 1);
+  EXPECT_EQ(rules(), Texts{}) << "they have no bytes in the local store";
+  issue(MfcOpcode::put, buffer_, kEa + 128, 128, 1);
+  EXPECT_EQ(rules(), Texts{"transfers-overlap"});
+  wait_for(1);
+  issue(MfcOpcode::sdcrz, 0, kEa, 256, 1);
+  issue(MfcOpcode::putf, buffer_, kEa, 128, 1);
+  wait_for(1);
+  issue(MfcOpcode::sdcrz, 0, kEa, 256, 1);
+  checker_.end_run();
+  EXPECT_EQ(rules(), Texts{"transfers-overlap"});
+  EXPECT_EQ(findings_.list().front().count, 1u);
+}
+
 TEST_F(CheckerTest, BytesFromOutsideCountAsWritten) {
   checker_.on_external_write({buffer_}, 4);
   load(buffer_, 4);
@@ -266,6 +325,17 @@ TEST_F(CheckerTest, BytesFromOutsideCountAsWritten) {
   checker_.on_load();
   checker_.begin_run(image_, stack_of(image_));
   load(buffer_, 4);
+  EXPECT_EQ(rules(), Texts{"load-never-written"});
+}
+
+TEST_F(CheckerTest, BytesThatThePpuSideWritesByAPointerCountAsWritten) {
+  std::memset(&local_store_.bytes()[buffer_], std::to_integer<int>(kFiller), 128);
+  local_store_.bytes()[buffer_ + 20] = std::byte{1};
+  checker_.on_shared();
+  load(buffer_ + 16, 4);  // the filler, in a quadword that was written
+  load(buffer_ + 20, 1);
+  EXPECT_EQ(rules(), Texts{});
+  load(buffer_ + 32, 4);
   EXPECT_EQ(rules(), Texts{"load-never-written"});
 }
 

@@ -150,7 +150,7 @@ TEST(Program, EndsItsStaticObjectsTheLastFirst) {
     const Ended ended = run("destroys", flavour, EntryArguments{});
     EXPECT_EQ(ended.output,
               "first is made\nsecond is made\nthird is made\natexit\na hundred end\nthird ends\nsecond "
-              "ends\nfirst ends\n");
+              "ends\nfirst ends\nthe last destructor function\nthe first destructor function\n");
     EXPECT_EQ(ended.result.status(), 0u) << ended.errors;
   }
 }
@@ -299,6 +299,14 @@ TEST(Program, ReadsNumbersAsTheHostDoes) {
                                  "0x1.8p3",
                                  "0x.8p-3",
                                  "0x",
+                                 "0x1.fffffffffffff8p0",
+                                 "0x1.00000000000008p0",
+                                 "0x1.00000000000018p0",
+                                 "-0x1.000000000000080000000001p0",
+                                 "0x123456789abcdefp0",
+                                 "0xffffffffffffffffffp-3",
+                                 "0x1.fffffffffffff8p1023",
+                                 "0x1.fffffffffffff7p1023",
                                  "inf",
                                  "-Infinity",
                                  "1e400",

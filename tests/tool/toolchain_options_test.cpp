@@ -35,6 +35,10 @@ TEST(ToolchainOptions, SayHowFarTheCompilerGoes) {
   EXPECT_EQ(parsed({"-M", "a.c"}).step, Step::kDependencies);
   EXPECT_EQ(parsed({"-MM", "-c", "a.c"}).step, Step::kDependencies);
   EXPECT_EQ(parsed({"-MD", "-c", "a.c"}).step, Step::kCompile);
+  EXPECT_EQ(parsed({"-fsyntax-only", "-c", "a.c"}).step, Step::kCheck);
+  EXPECT_EQ(parsed({"-c", "-fsyntax-only", "a.c"}).step, Step::kCheck);
+  EXPECT_EQ(parsed({"-E", "-fsyntax-only", "a.c"}).step, Step::kPreprocess);
+  EXPECT_EQ(parsed({"-dM", "-E", "a.c"}).macros, Words{"-dM"});
   EXPECT_EQ(parsed({"-oprogram", "a.c"}).output, "program");
   EXPECT_EQ(parsed({"-o", "program", "a.c"}).output, "program");
   EXPECT_TRUE(parsed({"-r", "a.o", "b.o"}).relocatable);
@@ -65,6 +69,12 @@ TEST(ToolchainOptions, GoToTheStepThatTheyAreFor) {
   EXPECT_TRUE(options.meaningless.empty());
 }
 
+TEST(ToolchainOptions, ThatChangeResultsGoToTheCompiler) {
+  const Options options = parsed({"-fsingle-precision-constant", "-fshort-wchar", "-fshort-enums", "a.c"});
+  EXPECT_EQ(options.compiler, (Words{"-fsingle-precision-constant", "-fshort-wchar", "-fshort-enums"}));
+  EXPECT_TRUE(options.meaningless.empty());
+}
+
 TEST(ToolchainOptions, WithoutMeaningAreKeptForOneNote) {
   const Options options =
       parsed({"-O3", "-g", "-pipe", "-funroll-loops", "-mfixed-range=80-127", "-std=c++98", "-T", "script.ld",
@@ -73,6 +83,16 @@ TEST(ToolchainOptions, WithoutMeaningAreKeptForOneNote) {
             (Words{"-funroll-loops", "-mfixed-range=80-127", "-std=c++98", "-T script.ld", "--gc-sections",
                    "-e _start", "-Xassembler -x", "-Wa,-a"}));
   EXPECT_TRUE(options.compiler.empty());
+}
+
+TEST(ToolchainOptions, NameNoInputAsTheOutput) {
+  const tests::ScratchFolder scratch;
+  const std::string source = scratch.path().string() + "/a.c";
+  std::ofstream(source) << "int main(void) { return 0; }\n";
+  EXPECT_EQ(refusal({source, "-o", scratch.path().string() + "/./a.c"}),
+            "-o " + scratch.path().string() + "/./a.c: this file is an input, too");
+  EXPECT_EQ(refusal({"-c", source, "-o", scratch.path().string() + "/a.o"}), "");
+  EXPECT_EQ(refusal({"-x", "c", "-c", "/dev/null", "-o", "/dev/null"}), "") << "as scripts ask for an option";
 }
 
 TEST(ToolchainOptions, TakeLibrariesWhereTheyStand) {

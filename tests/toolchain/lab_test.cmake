@@ -17,6 +17,10 @@ says(0 "finding: SPE 0, kernel scale, more_help.cpp:5: load-in-flight" ${CMAKE_C
 
 # Other ways to call the commands.
 set(gcc ${BIN}/softcell-spu-gcc)
+says(0 "version" ${gcc} -v)
+says(0 "#define __SPU__ 1\n" sh -c "${gcc} -E -dM -x c /dev/null")
+says(1 "undeclared" sh -c "printf 'int a = undeclared\\073\n' | ${gcc} -fsyntax-only -x c -")
+says(0 "^$" sh -c "cd ${lab} && ${gcc} -fsyntax-only -Ispu -DFACTOR=2 spu/main.c && test ! -e a.out -a ! -e main.o")
 says(0 "^spu\n$" ${gcc} -dumpmachine)
 says(0 "softcell-spu-gcc \\(softcell\\)" ${gcc} --version)
 says(0 "stack-size=BYTES" ${gcc} --help)
@@ -31,6 +35,16 @@ says(0 "_end" ${BIN}/softcell-spu-nm ${lab}/by_ld)
 says(0 "elf32-x86-64" ${BIN}/softcell-spu-objdump -h ${lab}/by_ld)
 file(WRITE ${lab}/options "-c -I${lab}/spu\n'-DFACTOR=4'  ${lab}/spu/more_help.cpp -o ${lab}/from_file.o")
 step("options from a file" ${gcc} @${lab}/options)
+
+file(WRITE ${lab}/constant.c "int main(void) { return sizeof(L'a'); }\n")
+step("an option that changes the language" ${gcc} -fshort-wchar ${lab}/constant.c -o ${lab}/constant)
+says(1 "ended with status 2" ${BIN}/softcell spu run ${lab}/constant)
+
+says(0 "^$" sh -c "printf '#include \"spu/help.h\"\nint main(void) { return 7\\073 }\n' | ${gcc} -I${lab} -x c - -o ${lab}/of_input")
+says(1 "ended with status 7" ${BIN}/softcell spu run --checked ${lab}/of_input)
+file(WRITE ${lab}/unchecked.c "#ifdef SOFTCELL_CHECKED\nint nowhere(void);\n#else\nint nowhere(void) { return 0; }\n#endif\n"
+  "int main(void) { return nowhere(); }\n")
+says(0 "undefined[^\n]*nowhere.*gets no checked flavour: it does not link\n$" ${gcc} ${lab}/unchecked.c -o ${lab}/unchecked)
 
 # What cannot be done is said in one sentence.
 file(WRITE ${lab}/code.s "il $3, 1\n")
@@ -52,6 +66,49 @@ says(1 "fpscr.c:2:[0-9]+: error: [^\n]*FPSCR is not modelled on the host" ${gcc}
 file(WRITE ${lab}/large.c "static char bytes[262144]; int main(void) { bytes[1] = 1; return bytes[2]; }\n")
 says(1 "does not fit into the local store: code and data take 262[0-9]+ bytes and the stack 4096, [0-9]+ more than its 262144\n$" ${gcc} ${lab}/large.c -o ${lab}/large)
 says(1 "and the stack 262144, [0-9]+ more" ${gcc} ${lab}/spu/main.o ${lab}/part.o -Wl,-z,stack-size=262144 -o ${lab}/large)
+
+# What several sources of a program define.
+file(WRITE ${lab}/one.c "int chosen(void) { return 1; }\n")
+file(WRITE ${lab}/two.c "int chosen(void) { return 2; }\n")
+file(WRITE ${lab}/calls.c "int chosen(void); int main(void) { return chosen(); }\n")
+foreach(sources "one.c;two.c" "two.c;one.c")
+  list(TRANSFORM sources PREPEND ${lab}/)
+  says(1 "multiple definition of `chosen'[^\n]*first defined here\n$" ${gcc} ${sources} ${lab}/calls.c -o ${lab}/twice)
+endforeach()
+file(WRITE ${lab}/old.c "int shared; int other(void); int main(void) { return shared + other(); }\n")
+file(WRITE ${lab}/value.c "int shared = 5; int other(void) { return 0; }\n")
+foreach(sources "old.c;value.c" "value.c;old.c")
+  list(TRANSFORM sources PREPEND ${lab}/)
+  step("a variable that two sources of old C define" ${gcc} ${sources} -o ${lab}/old)
+  says(1 "ended with status 5" ${BIN}/softcell spu run ${lab}/old)
+endforeach()
+file(WRITE ${lab}/own.c "#include <stdlib.h>\n#include <string.h>\nstatic char pool[64];\nvoid* malloc(size_t n) { return pool; }\n"
+  "int main(void) { return strdup(\"a\") == pool && calloc(1, 1) != NULL ? 7 : 8; }\n")
+step("a function of the library's name" ${gcc} -w ${lab}/own.c -o ${lab}/own)
+says(1 "ended with status 7" ${BIN}/softcell spu run ${lab}/own)
+says(1 "ended with status 7" ${BIN}/softcell spu run --checked ${lab}/own)
+
+# A main in an archive, and none.
+file(WRITE ${lab}/main_of_archive.c "int main(void) { return 6; }\n")
+step("an object with a main" ${gcc} -c ${lab}/main_of_archive.c -o ${lab}/main_of_archive.o)
+step("an archive with a main" ${BIN}/softcell-spu-ar rcs ${lab}/libmain.a ${lab}/main_of_archive.o)
+step("a main in an archive" ${gcc} ${lab}/value.c -L${lab} -lmain -o ${lab}/main_of_archive)
+says(1 "ended with status 6" ${BIN}/softcell spu run ${lab}/main_of_archive)
+says(1 "^[^\n]*there is no main\n$" ${gcc} ${lab}/value.c -o ${lab}/no_main)
+
+# The SPU's compilers know no operating system.
+file(WRITE ${lab}/system.c "struct systems { int linux, unix; };\n#if defined(__linux__) || defined(__unix__)\n#error a system\n#endif\n")
+step("a source with names of systems" ${gcc} -c ${lab}/system.c -o ${lab}/system.o)
+
+# Variables of a thread, of which there is one.
+file(WRITE ${lab}/threads.c "static __thread int a = 3; _Thread_local int b;\n"
+  "int main(void) { static __thread int c = 1; b += 2; a += 2; return a + b + c; }\n")
+step("variables of a thread" ${gcc} ${lab}/threads.c -o ${lab}/threads)
+says(1 "ended with status 8" ${BIN}/softcell spu run ${lab}/threads)
+file(WRITE ${lab}/threads.cpp "int main() {\n  thread_local int a = 3;\n  return ++a;\n}\n")
+says(1 "threads.cpp:2:[0-9]+: error: one thread runs in a local store: leave out thread_local" ${BIN}/softcell-spu-g++ ${lab}/threads.cpp -o ${lab}/threads)
+says(1 "one thread runs in a local store: leave out thread_local" ${BIN}/softcell-spu-g++ -Uthread_local ${lab}/threads.cpp -o ${lab}/threads)
+
 says(2 "usage: softcell-embedspu" ${BIN}/softcell-embedspu symbol)
 says(2 "is no name of a variable" ${BIN}/softcell-embedspu 1st ${lab}/whole ${lab}/e.o)
 says(2 "is no ELF file" ${BIN}/softcell-embedspu name ${lab}/Makefile ${lab}/e.o)

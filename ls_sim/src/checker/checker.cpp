@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "softcell/base/assert.h"
+#include "softcell/ls_sim/local_store.h"
 #include "softcell/ls_sim/trace.h"
 
 namespace softcell::ls_sim {
@@ -129,7 +130,7 @@ void Checker::on_instruction(const ExecutedInstruction& instruction) {
   const std::uint32_t lsa = instruction.address.value;
   mark_changed_words();
   const bool is_code = lsa >= image_->text_begin && lsa < image_->text_end;
-  if (!is_code && !written_.any(lsa, 4)) {
+  if (!is_code && !is_written(lsa, 4)) {
     report(
         Rule::kJumpOutsideCode, instruction.address,
         "it executes LSA " + hex(lsa) + ", which is no code of the program, nor has the program written it");
@@ -168,6 +169,7 @@ void Checker::report_undefined(const ExecutedInstruction& instruction) {
 
 UndefinedBits Checker::undefined_bits(dma::LocalStoreAddress quadword) {
   UndefinedBits bits;
+  if (is_shared_.load(std::memory_order_relaxed)) find_unseen_writes(quadword.value, dma::kQuadwordBytes);
   for (std::uint32_t i = 0; i < bits.size(); ++i) bits[i] = written_.undefined(quadword.value + i);
   return bits;
 }
@@ -203,6 +205,29 @@ void Checker::on_access(const Access& access) {
   mark_unsynced({.lsa = access.lsa.value, .bytes = access.bytes}, access.instruction);
 }
 
+bool Checker::is_written(std::uint32_t lsa, std::uint32_t bytes) {
+  if (written_.any(lsa, bytes)) return true;
+  if (!is_shared_.load(std::memory_order_relaxed)) return false;
+  find_unseen_writes(lsa, bytes);
+  return written_.any(lsa, bytes);
+}
+
+/// A quadword of which a byte that is not known as written is no longer as the load of the image has left it. (After a run it may be
+/// the last program's; then this finds too little, but nothing wrong.)
+void Checker::find_unseen_writes(std::uint32_t lsa, std::uint32_t bytes) {
+  const std::uint32_t end = std::min(lsa + bytes, dma::kLocalStoreBytes);
+  for (std::uint32_t begin = lsa / dma::kQuadwordBytes * dma::kQuadwordBytes; begin < end;
+       begin += dma::kQuadwordBytes) {
+    bool is_changed = false;
+    for (std::uint32_t at = begin; at < begin + dma::kQuadwordBytes; ++at)
+      is_changed = is_changed || (!written_.any(at, 1) && to_.local_store[at] != kFiller);
+    if (!is_changed) continue;
+    for (std::uint32_t at = begin; at < begin + dma::kQuadwordBytes; ++at) {
+      if (!written_.any(at, 1)) written_.mark_external(at, 1);
+    }
+  }
+}
+
 void Checker::check_store(const Access& access) {
   const std::uint32_t lsa = access.lsa.value;
   if (reservation_ && lsa < reservation_->command.lsa.value + dma::kLineBytes &&
@@ -230,7 +255,7 @@ void Checker::check_load(const Access& access) {
   // load of which some bytes were written takes padding along. Of a program with a heap bytes are followed to where
   // they matter: it stores to part of a quadword by loading it first.
   if (runs_spu_program() && image_->main == 0) return;
-  if (objects_->in_stack(access.lsa.value) || written_.any(access.lsa.value, access.bytes)) return;
+  if (objects_->in_stack(access.lsa.value) || is_written(access.lsa.value, access.bytes)) return;
   report(Rule::kLoadNeverWritten, access.instruction,
          describe(access) + ": this job has not written these bytes");
 }
@@ -242,20 +267,22 @@ ChannelReply Checker::issue(const dma::MfcCommand& command) {
   CommandInFlight in_flight{
       .command = command,
       .issued_at = to_.engine.position(),
-      .writes_local_store = command.is_get(),
-      .writes_main_storage = command.is_put() || command.kind() == CommandKind::kQueuedLine,
+      .writes_local_store = command.is_get() || command.opcode() == MfcOpcode::getllar,
+      .writes_main_storage = command.is_put() || command.kind() == CommandKind::kQueuedLine ||
+                             command.opcode() == MfcOpcode::putllc ||
+                             command.opcode() == MfcOpcode::putlluc || command.opcode() == MfcOpcode::sdcrz,
       .cursor = command.lsa};
   // The list as it is now: the command may write over it.
   add_ranges(in_flight, to_.local_store, runs_spu_program());
   ChannelReply reply = to_.channels.issue(command);
   if (reply.fault) return reply;
   if (command.kind() == CommandKind::kLine) {
-    check_line_command(command);
+    check_line_command(in_flight);
     return reply;
   }
   SC_ASSERT(command.tag < dma::kTagCount, "the MFC has accepted a command of tag {}", command.tag);
   tags_issued_ |= 1u << command.tag;
-  if (command.kind() == CommandKind::kCacheHint) return reply;
+  if (command.kind() == CommandKind::kCacheHint && command.opcode() != MfcOpcode::sdcrz) return reply;
   if (command.kind() == CommandKind::kQueuedLine) end_reservation(command);
   check_ranges(in_flight_.add(std::move(in_flight)));
   return reply;
@@ -263,8 +290,14 @@ ChannelReply Checker::issue(const dma::MfcCommand& command) {
 
 void Checker::check_ranges(CommandInFlight& command) {
   SC_ASSERT(objects_.has_value(), "command {} is checked before a run", command.number);
-  for (const MovedRange& range : command.ranges)
-    check_local_range(command.command, range, command.writes_local_store);
+  if (command.moves_local_store()) {
+    for (const MovedRange& range : command.ranges)
+      check_local_range(command.command, range, command.writes_local_store);
+  }
+  check_overlaps(command);
+}
+
+void Checker::check_overlaps(const CommandInFlight& command) {
   if (const CommandInFlight* const other = in_flight_.conflicting(command)) {
     report(Rule::kTransfersOverlap, to_.engine.position(), "in flight: " + describe(*other), command.command);
   }
@@ -293,7 +326,7 @@ void Checker::check_local_range(const dma::MfcCommand& command, const MovedRange
     // By quadwords, as the SPU stores. Where variables on the stack have their padding is not known.
     const std::uint32_t step = objects_->in_stack(range.lsa) ? range.bytes : dma::kQuadwordBytes;
     for (std::uint32_t done = 0; done < range.bytes; done += step) {
-      if (written_.any(range.lsa + done, std::min(step, range.bytes - done))) continue;
+      if (is_written(range.lsa + done, std::min(step, range.bytes - done))) continue;
       report(Rule::kPutNeverWritten, here,
              objects_->describe(range.lsa + done) + ": this job has not written these bytes", command);
       break;
@@ -304,9 +337,9 @@ void Checker::check_local_range(const dma::MfcCommand& command, const MovedRange
   mark_unsynced(range, here);
 }
 
-void Checker::check_line_command(const dma::MfcCommand& command) {
+void Checker::check_line_command(const CommandInFlight& line) {
+  const dma::MfcCommand& command = line.command;
   const Address here = to_.engine.position();
-  const MovedRange line{command.lsa.value, command.ea.value, dma::kLineBytes};
   if (status_unread_) {
     report(Rule::kAtomicStatusNotRead, here,
            "the status of the " + name_of(status_unread_->command) + " before it, issued at " +
@@ -317,7 +350,8 @@ void Checker::check_line_command(const dma::MfcCommand& command) {
   if (command.opcode() == MfcOpcode::putllc &&
       !(reservation_ && same_line(reservation_->command.ea, command.ea)))
     report(Rule::kPutllcWithoutReservation, here, "no getllar of this line came before it", command);
-  check_local_range(command, line, command.opcode() == MfcOpcode::getllar);
+  for (const MovedRange& range : line.ranges) check_local_range(command, range, line.writes_local_store);
+  check_overlaps(line);  // it does not wait for the queue
   end_reservation(command);
 }
 
@@ -414,7 +448,8 @@ void Checker::end_run() {
            reservation_->command);
   }
   for (const CommandInFlight& command : in_flight_.all()) {
-    if (command.command.kind() == CommandKind::kOrdering) continue;
+    // A cache command has no results of the program's.
+    if (command.command.kind() == CommandKind::kOrdering || !command.moves_local_store()) continue;
     report(Rule::kCommandsOutstanding, command.issued_at, "the program ends without a wait for its tag",
            command.command);
   }

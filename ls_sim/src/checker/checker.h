@@ -8,6 +8,7 @@
 // every schedule.
 
 #include <array>
+#include <atomic>
 #include <cstddef>
 #include <memory>
 #include <optional>
@@ -75,6 +76,9 @@ class Checker final : public ChannelPort, public AccessObserver {
     unsynced_.mark(lsa.value, bytes, UnsyncedBytes::kOutside);
   }
 
+  /// The PPU side has a pointer to the local store, through which it may write unseen from now on. Any thread.
+  void on_shared() { is_shared_.store(true, std::memory_order_relaxed); }
+
   ChannelReply read(std::uint32_t channel) override;
   ChannelReply write(std::uint32_t channel, std::uint32_t value) override;
   ChannelReply count(std::uint32_t channel) override;
@@ -122,11 +126,14 @@ class Checker final : public ChannelPort, public AccessObserver {
   void mark_changed_words();
   void check_fetched_code();
   void mark_unsynced(const MovedRange& range, Address writer);
+  bool is_written(std::uint32_t lsa, std::uint32_t bytes);
+  void find_unseen_writes(std::uint32_t lsa, std::uint32_t bytes);
   void check_store(const Access& access);
   void check_load(const Access& access);
   void report_undefined(const ExecutedInstruction& instruction);
   void check_ranges(CommandInFlight& command);
-  void check_line_command(const dma::MfcCommand& command);
+  void check_overlaps(const CommandInFlight& command);
+  void check_line_command(const CommandInFlight& line);
   void check_local_range(const dma::MfcCommand& command, const MovedRange& range, bool is_get);
   void end_reservation(const dma::MfcCommand& by);
   void complete(std::uint32_t tags);
@@ -153,6 +160,7 @@ class Checker final : public ChannelPort, public AccessObserver {
   std::optional<ObjectMap> objects_;
 
   WrittenBytes written_;
+  std::atomic<bool> is_shared_ = false;
   UnsyncedBytes unsynced_;
   CommandsInFlight in_flight_;
   std::uint32_t tag_mask_ = 0;

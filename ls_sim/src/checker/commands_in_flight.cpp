@@ -15,7 +15,8 @@ bool overlap(Number a, std::uint32_t a_bytes, Number b, std::uint32_t b_bytes) {
 }
 
 bool touches(const CommandInFlight& command, std::uint32_t lsa, std::uint32_t bytes) {
-  return std::any_of(command.ranges.begin(), command.ranges.end(),
+  return command.moves_local_store() &&
+         std::any_of(command.ranges.begin(), command.ranges.end(),
                      [&](const MovedRange& range) { return overlap(range.lsa, range.bytes, lsa, bytes); });
 }
 
@@ -23,6 +24,13 @@ bool touches(const CommandInFlight& command, std::uint32_t lsa, std::uint32_t by
 bool is_ordered(const dma::MfcCommand& earlier, const dma::MfcCommand& later) {
   if (earlier.is_queue_barrier() || later.is_queue_barrier()) return true;
   return earlier.tag == later.tag && (later.has_fence() || later.has_barrier() || earlier.has_barrier());
+}
+
+/// A putqlluc that stores into a line, and a line command that looks at it again: who takes a lock that it has just given up begins
+/// anew until it sees that.
+bool gives_up_a_lock(const CommandInFlight& earlier, const CommandInFlight& later) {
+  return earlier.command.kind() == dma::CommandKind::kQueuedLine &&
+         later.command.kind() == dma::CommandKind::kLine;
 }
 
 bool contains(const std::vector<std::uint64_t>& sorted, std::uint64_t number) {
@@ -37,12 +45,20 @@ void add_ranges(CommandInFlight& in_flight, std::span<const std::byte> local_sto
     case dma::CommandKind::kTransfer:
       in_flight.ranges.push_back({command.lsa.value, command.ea.value, command.size});
       return;
+    case dma::CommandKind::kLine:
     case dma::CommandKind::kQueuedLine:
       in_flight.ranges.push_back({command.lsa.value, command.ea.value, dma::kLineBytes});
       return;
     case dma::CommandKind::kSignal:
       in_flight.ranges.push_back({command.lsa.value, command.ea.value, dma::kSignalBytes});
       return;
+    case dma::CommandKind::kCacheHint: {
+      constexpr std::uint64_t kLineMask = dma::kLineBytes - 1;
+      const std::uint64_t begin = command.ea.value & ~kLineMask;
+      const std::uint64_t end = (command.ea.value + command.size + kLineMask) & ~kLineMask;
+      in_flight.ranges.push_back({0, begin, static_cast<std::uint32_t>(end - begin)});
+      return;
+    }
     case dma::CommandKind::kList:
       break;
     default:
@@ -132,8 +148,10 @@ const CommandInFlight* CommandsInFlight::listing(std::uint32_t lsa, std::uint32_
 const CommandInFlight* CommandsInFlight::conflicting(const CommandInFlight& command) const {
   for (const CommandInFlight& other : commands_) {
     if (other.number == command.number || contains(command.behind, other.number)) continue;
-    const bool local = command.writes_local_store || other.writes_local_store;
-    const bool main = command.writes_main_storage || other.writes_main_storage;
+    const bool local = (command.writes_local_store || other.writes_local_store) &&
+                       command.moves_local_store() && other.moves_local_store();
+    const bool main =
+        (command.writes_main_storage || other.writes_main_storage) && !gives_up_a_lock(other, command);
     for (const MovedRange& a : command.ranges) {
       for (const MovedRange& b : other.ranges) {
         if ((local && overlap(a.lsa, a.bytes, b.lsa, b.bytes)) ||

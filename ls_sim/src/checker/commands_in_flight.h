@@ -37,6 +37,8 @@ struct CommandInFlight {
   /// Numbers of the commands that complete before this one starts.
   std::vector<std::uint64_t> behind = {};
 
+  /// sdcrz writes main storage only.
+  bool moves_local_store() const { return command.kind() != dma::CommandKind::kCacheHint; }
   bool is_list() const { return command.kind() == dma::CommandKind::kList; }
   /// Elements are left behind one that stalls; the last one never does.
   bool can_stall() const { return is_list() && next_element < command.size / dma::kListElementBytes; }
@@ -69,7 +71,7 @@ class CommandsInFlight {
   /// The first list command whose list elements lie there and may still be read, or null.
   const CommandInFlight* listing(std::uint32_t lsa, std::uint32_t bytes) const;
   /// The first command that shares bytes with this one, of which at least one writes, and that nothing
-  /// orders; or null.
+  /// orders; or null. A line command, which is no command in flight, is ordered behind nothing.
   const CommandInFlight* conflicting(const CommandInFlight& command) const;
 
  private:

@@ -136,7 +136,10 @@ class Door final : public ProblemState {
     spe_.on_external_write(lsa, size);
     dma::copy_to_local_store(&spe_.local_store()[lsa.value], bytes.data(), size);
   }
-  std::span<std::byte> local_store() override { return spe_.local_store(); }
+  std::span<std::byte> local_store() override {
+    spe_.on_shared();
+    return spe_.local_store();
+  }
   dma::EffectiveAddress local_store_ea() const override { return ea_; }
 
   /// As the image that is loaded has its local store.

@@ -85,6 +85,11 @@ class Spe final : public dma::LocalStorePort, private dma::ReservationListener, 
   void on_external_write(dma::LocalStoreAddress lsa, std::uint32_t bytes) override;
   void on_register_write(dma::SpeRegister which, std::uint32_t value) override;
 
+  /// The PPU side gets a pointer to the local store. Any thread.
+  void on_shared() {
+    if (checker_ != nullptr) checker_->on_shared();
+  }
+
  private:
   void on_reservation_lost() override;
   const KernelImage* on_job_begin(dma::EffectiveAddress image, dma::EffectiveAddress job) override;

@@ -21,6 +21,7 @@
 #include "softcell/base/assert.h"
 #include "softcell/dma/local_store_bytes.h"
 #include "softcell/ls_sim/engine.h"
+#include "softcell/ls_sim/local_store.h"
 #include "softcell/ls_sim/source_lines.h"
 
 namespace softcell::ls_sim {
@@ -28,7 +29,6 @@ namespace {
 
 using namespace interpreter;
 
-constexpr std::byte kFiller{0xA5};
 constexpr std::uint32_t kStackTop = 0x3FFF0;  // [libspe2, lv2] second-hand
 constexpr int kStackRegister = CheckedObserver::kStackRegister,
               kFirstArgument = CheckedObserver::kFirstArgument;

@@ -14,7 +14,6 @@
 namespace softcell::ls_sim::interpreter {
 namespace {
 
-constexpr std::byte kFiller{0xA5};
 constexpr std::uint32_t kCanaryBytes = 256;
 /// The function called keeps its link register in the caller's frame, bytes 16 to 31.  [SPU ABI] documented
 constexpr std::uint32_t kSharedFrameBytes = 32;

@@ -20,8 +20,10 @@
 #include "kernel_context.h"
 #include "signals.h"
 #include "softcell/base/assert.h"
+#include "softcell/base/text.h"
 #include "softcell/dma/local_store_bytes.h"
 #include "softcell/ls_sim/engine.h"
+#include "softcell/ls_sim/local_store.h"
 
 namespace softcell::ls_sim {
 
@@ -40,7 +42,6 @@ namespace {
 using native::KernelContext;
 using native::Operation;
 
-constexpr std::byte kFiller{0xA5};
 constexpr bool is_filler(std::byte b) { return b == kFiller; }
 constexpr std::uint32_t kCanaryBytes = 256;  // watched below the declared stack
 // Of the gate's frame: its caller's frame pointer and return address.
@@ -610,12 +611,12 @@ dma::Fault NativeEngine::cause_of_trap() const {
   const std::uintptr_t offset = trap.address - arena();
   if (offset < 2 * std::uintptr_t{dma::kLocalStoreBytes}) {
     return fault(dma::Rule::kOutsideLocalStore, where + access +
-                                                    std::to_string(offset - dma::kLocalStoreMask) +
-                                                    " bytes past the end of the local store");
+                                                    base::byte_count(offset - dma::kLocalStoreMask) +
+                                                    " past the end of the local store");
   }
   if (arena() - trap.address <= LocalStore::kGuardBytes) {
     return fault(dma::Rule::kOutsideLocalStore,
-                 where + access + std::to_string(arena() - trap.address) + " bytes before the local store");
+                 where + access + base::byte_count(arena() - trap.address) + " before the local store");
   }
   return fault(
       dma::Rule::kOutsideLocalStore,

@@ -10,7 +10,7 @@
 #include <spu_intrinsics.h>
 #define SC_REGISTER "r"
 #else
-#include <emmintrin.h>
+#include <immintrin.h>
 #define SC_REGISTER "x"
 #endif
 
@@ -151,12 +151,43 @@ double remainder_to_nearest(double x, double y) {
   return bits_of(x) < 0 ? -rest : rest;
 }
 
+/// a * b + c, rounded once.
+double fused(double a, double b, double c) {
+#ifndef __x86_64__
+  return spu_extract(spu_madd(spu_promote(a, 0), spu_promote(b, 0), spu_promote(c, 0)), 0);
+#else
+  return _mm_cvtsd_f64(_mm_fmadd_sd(_mm_set_sd(a), _mm_set_sd(b), _mm_set_sd(c)));
+#endif
+}
+
+// ---- sums of two doubles, where a result is to be rounded once
+
+struct Pair {
+  double high, low;  ///< |low| is at most half a unit in the last place of `high`
+};
+/// a + b for |a| >= |b|, exact. [Dekker 1971] documented
+Pair sum_of_ordered(double a, double b) {
+  const double sum = a + b;
+  return {sum, b - (sum - a)};
+}
+/// a + b, exact. [Knuth, TAOCP 2, 4.2.2] documented
+Pair sum(double a, double b) {
+  const double both = a + b, of_b = both - a;
+  return {both, (a - (both - of_b)) + (b - of_b)};
+}
+/// a * b, exact.
+Pair product(double a, double b) {
+  const double both = a * b;
+  return {both, fused(a, b, -both)};
+}
+Pair product(Pair a, Pair b) {
+  const Pair both = product(a.high, b.high);
+  return sum_of_ordered(both.high, both.low + (a.high * b.low + a.low * b.high));
+}
+
 // ---- roots
 
 #ifndef __x86_64__
-double scalar_fused(double a, double b, double c) {
-  return spu_extract(spu_madd(spu_promote(a, 0), spu_promote(b, 0), spu_promote(c, 0)), 0);
-}
 
 /// Correctly rounded: from an estimate the double below the root, and then by the sign of a residue that is exact.
 double root_of(double x) {
@@ -171,11 +202,11 @@ double root_of(double x) {
   double r = static_cast<double>(spu_extract(spu_rsqrte(spu_promote(static_cast<float>(part), 0)), 0));
   for (int i = 0; i < 3; ++i) r = r * (1.5 - 0.5 * part * r * r);
   double root = part * r;
-  root = root + 0.5 * r * scalar_fused(-root, root, part);
+  root = root + 0.5 * r * fused(-root, root, part);
   // Now within a unit in the last place. root - u/2 < sqrt(part) < root + u/2 by squares: (root +- u/2)^2 = root^2 +- u root + u^2/4.
   const double unit = 0x1p-53;
   for (;;) {
-    const double rest = scalar_fused(-root, root, part);
+    const double rest = fused(-root, root, part);
     if (rest > root * unit)
       root += unit;
     else if (rest <= -(root * unit))
@@ -242,7 +273,6 @@ double logarithm_to_2(double x) {
   const Logarithm l = logarithm(x);
   return l.exponent + l.of_part * kLog2e;
 }
-double logarithm_to_10(double x) { return x > 0 ? natural_logarithm(x) / kLn10 : no_logarithm(x); }
 /// ln (1 + x), by the logarithm of what 1 + x is rounded to.
 double logarithm_of_1_and(double x) {
   if (!(x > -1)) return no_logarithm(x + 1);
@@ -250,13 +280,90 @@ double logarithm_of_1_and(double x) {
   return u == 1 ? x : natural_logarithm(u) * (x / (u - 1));
 }
 
+// ---- powers and decimal logarithms, whose results are whole numbers where they are: with pairs, rounded once
+
+constexpr Pair kLn2Pair{
+    0x1.62E42FEFA3800p-1,
+    0x1.EF35793C76730p-45};  // the first has 42 bits: its product with an exponent is exact
+constexpr Pair kOverLn10{0x1.BCB7B1526E50Ep-2, 0x1.95355BAAAFAD3p-57};
+/// Of s^7 and on in artanh s, and of r^3 and on in e^r.
+constexpr double kLogarithmTail[] = {1.0 / 7,  1.0 / 9,  1.0 / 11, 1.0 / 13, 1.0 / 15, 1.0 / 17,
+                                     1.0 / 19, 1.0 / 21, 1.0 / 23, 1.0 / 25, 1.0 / 27};
+constexpr double kExponentialTail[] = {
+    1.0 / 6,          1.0 / 24,          1.0 / 120,          1.0 / 720,      1.0 / 5040,
+    1.0 / 40320,      1.0 / 362880,      1.0 / 3628800,      1.0 / 39916800, 1.0 / 479001600,
+    1.0 / 6227020800, 1.0 / 87178291200, 1.0 / 1307674368000};
+constexpr Pair kThird{0x1.5555555555555p-2, 0x1.5555555555555p-56},
+    kFifth{0x1.999999999999Ap-3, -0x1.999999999999Ap-57};
+
+/// ln x to 2^-65 of it, of 0 < x < infinity: exponent ln 2 + 2 artanh s, s = (m - 1) / (m + 1).
+Pair precise_logarithm(double x) {
+  int exponent;
+  double m = 2 * parted(x, &exponent);
+  --exponent;
+  if (m > kSqrt2) {
+    m *= 0.5;
+    ++exponent;
+  }
+  const Pair above = sum(m, 1);
+  const double below = m - 1, quotient = below / above.high;
+  const Pair s =
+      sum_of_ordered(quotient, (fused(-quotient, above.high, below) - quotient * above.low) / above.high);
+  const Pair q = product(s, s);
+  // artanh s = s + s q (1/3 + q (1/5 + q ...))
+  const Pair fifth = sum_of_ordered(kFifth.high, kFifth.low + q.high * polynomial(q.high, kLogarithmTail));
+  const Pair rest = product(q, fifth), third = sum_of_ordered(kThird.high, rest.high);
+  const Pair tail = product(product(s, q), {third.high, third.low + (kThird.low + rest.low)});
+  const Pair area = sum_of_ordered(s.high, tail.high);
+  const double e = static_cast<double>(exponent);
+  const Pair whole = sum(e * kLn2Pair.high, 2 * area.high);
+  return sum_of_ordered(whole.high, whole.low + (e * kLn2Pair.low + 2 * (area.low + (s.low + tail.low))));
+}
+
+/// e^x to 2^-60 of it before it is rounded.
+double exponential_of(Pair x) {
+  const int64_t k = nearest(x.high * kLog2e);
+  const double n = static_cast<double>(k);
+  // What is left of the first part is exact.
+  const Pair r = sum(x.high - n * kLn2Pair.high, x.low - n * kLn2Pair.low);
+  const Pair square = product(r.high, r.high);
+  const double low = r.low + (0.5 * square.low + r.high * r.low) +
+                     r.high * square.high * polynomial(r.high, kExponentialTail);
+  const Pair second = sum_of_ordered(r.high, 0.5 * square.high), first = sum_of_ordered(1, second.high);
+  const double part = first.high + (first.low + (second.low + low));
+  return k > 1023 ? part * 2 * power_of_2(1023) : part * power_of_2(k);
+}
+
+double logarithm_to_10(double x) {
+  if (!(x > 0)) return no_logarithm(x);
+  if (x > 0x1.FFFFFFFFFFFFFp1023) return x;
+  const Pair both = product(precise_logarithm(x), kOverLn10);
+  return both.high + both.low;
+}
+
 double power(double x, double y) {
   if (y == 0 || x == 1) return 1;
+  if (x != x || y != y) return x + y;
   if (x == 0) return y > 0 ? 0 : HUGE_VAL;
   const bool whole = truncated(y) == y;
   if (x < 0 && !whole) return 0;
-  const double size = exponential(y * natural_logarithm(size_of(x)));
-  return x < 0 && remainder_towards_zero(y, 2) != 0 ? -size : size;
+  const bool is_negative = x < 0 && remainder_towards_zero(y, 2) != 0;
+  double size = size_of(x);
+  if (size > 0x1.FFFFFFFFFFFFFp1023) {
+    size = y > 0 ? HUGE_VAL : 0;
+  } else {
+    const Pair logarithm_of_x = precise_logarithm(size);
+    const double about = y * logarithm_of_x.high;
+    if (about > 709.8) {
+      size = HUGE_VAL;
+    } else if (!(about > -708.3965)) {
+      size = 0;
+    } else {
+      size = exponential_of(product({y, 0}, logarithm_of_x));
+      if (size < 0x1p-1022) size = 0;
+    }
+  }
+  return is_negative ? -size : size;
 }
 
 /// From an estimate by Newton's iteration, once, so that cubes of whole numbers have whole roots.
@@ -266,7 +373,19 @@ double cube_root(double x) {
   return with_sign_of(root - (root * root * root - size) / (3 * root * root), x);
 }
 
-double hypotenuse(double x, double y) { return root_of(x * x + y * y); }
+/// Rounded nearly once, of numbers whose squares are too large or too small, too.
+double hypotenuse(double x, double y) {
+  const double larger = size_of(x) > size_of(y) ? size_of(x) : size_of(y);
+  const double smaller = size_of(x) > size_of(y) ? size_of(y) : size_of(x);
+  if (larger + smaller == larger || larger > 0x1.FFFFFFFFFFFFFp1023) return larger;
+  int exponent;
+  const double a = parted(larger, &exponent), b = scaled(smaller, -exponent);
+  const Pair a_square = product(a, a), b_square = product(b, b);
+  const Pair squares = sum_of_ordered(a_square.high, b_square.high);
+  const double root = root_of(squares.high);
+  const double rest = fused(-root, root, squares.high) + (squares.low + (a_square.low + b_square.low));
+  return scaled(root + rest / (2 * root), exponent);
+}
 
 // ---- angles
 

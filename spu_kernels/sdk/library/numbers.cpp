@@ -83,7 +83,19 @@ int rand_r(unsigned int* state) {
   return static_cast<int>(next >> 33);
 }
 
-static void exchange(unsigned char* a, unsigned char* b, size_t bytes) {
+#ifdef SOFTCELL_CHECKED
+void __tsan_write_range(const volatile void* at, size_t bytes);  // sdk/checked
+#define SC_NOT_REPORTED __attribute__((no_sanitize("thread", "kernel-address")))
+#else
+#define SC_NOT_REPORTED
+#endif
+
+/// For the checker it writes both: not all bytes of an element need be written, such as its padding.
+SC_NOT_REPORTED static void exchange(unsigned char* a, unsigned char* b, size_t bytes) {
+#ifdef SOFTCELL_CHECKED
+  __tsan_write_range(a, bytes);
+  __tsan_write_range(b, bytes);
+#endif
   for (size_t i = 0; i < bytes; ++i) {
     const unsigned char kept = a[i];
     a[i] = b[i];

@@ -176,6 +176,37 @@ bool read_decimal(const char*& s, Decimal& d) {
   return true;
 }
 
+/// Without its lowest bits, the nearest, halves to the even one. (A conversion would truncate, as the host does while a kernel runs.)
+uint64_t without_low_bits(uint64_t number, int bits) {
+  const uint64_t unit = uint64_t{1} << bits, rest = number & (unit - 1);
+  const uint64_t kept = number >> bits;
+  return kept + (rest > unit / 2 || (rest == unit / 2 && (kept & 1) != 0) ? 1 : 0);
+}
+
+/// The nearest double.
+double rounded(uint64_t number) {
+  constexpr int kBits = 53;
+  int excess = 0;
+  while (excess < 64 - kBits && number >> (kBits + excess) != 0) ++excess;
+  if (excess == 0) return static_cast<double>(number);
+  return ldexp(static_cast<double>(without_low_bits(number, excess)), excess);
+}
+
+/// The nearest float of a double that is no larger than the largest; of those below the smallest it is 0.
+float rounded_to_float(double x) {
+  constexpr int kLessDigits = 52 - 23;
+  constexpr uint64_t kSign = uint64_t{1} << 63, kLessExponent = uint64_t{1023 - 127} << 23,
+                     kSmallest = 1u << 23;
+  uint64_t bits;
+  __builtin_memcpy(&bits, &x, sizeof bits);
+  const uint64_t size = without_low_bits(bits & ~kSign, kLessDigits);
+  uint32_t result = static_cast<uint32_t>((bits & kSign) >> 32);
+  if (size >= kLessExponent + kSmallest) result |= static_cast<uint32_t>(size - kLessExponent);
+  float rounded;
+  __builtin_memcpy(&rounded, &result, sizeof rounded);
+  return rounded;
+}
+
 /// The same in sixteens, behind 0x.
 bool read_hexadecimal(const char*& s, double& value) {
   bool any = false, point = false, more = false;
@@ -201,8 +232,8 @@ bool read_hexadecimal(const char*& s, double& value) {
   if (!any) return false;
   s = at;
   exponent += read_exponent(s, 'p');
-  // Rounded once, by the conversion: the digits have up to 62 bits, of which the lowest keeps what was cut off.
-  const double size = static_cast<double>(digits | (more ? 1 : 0));
+  // The digits have up to 62 bits, of which the lowest keeps what was cut off.
+  const double size = rounded(digits | (more ? 1 : 0));
   int binary;
   const double part = frexp(size, &binary);
   if (size != 0 && binary + exponent > 1024)
@@ -246,7 +277,7 @@ float strtof(const char* text, char** end) {
     errno = ERANGE;
     return value < 0 ? -HUGE_VALF : HUGE_VALF;
   }
-  return static_cast<float>(value);
+  return rounded_to_float(value);
 }
 
 double atof(const char* text) { return strtod(text, nullptr); }

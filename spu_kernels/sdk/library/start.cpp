@@ -12,6 +12,8 @@ extern "C" {
 using Function = void();
 extern Function* const softcell_constructors[] __attribute__((visibility("hidden")));
 extern Function* const softcell_constructors_end[] __attribute__((visibility("hidden")));
+extern Function* const softcell_destructors[] __attribute__((visibility("hidden")));
+extern Function* const softcell_destructors_end[] __attribute__((visibility("hidden")));
 
 /// The program's main, whatever its parameters: what it does not take is left alone. Numbers and vectors come in registers of different kinds.
 using Words = softcell_sdk::Raw<unsigned int>;
@@ -67,6 +69,7 @@ void exit(int status) {
     at_exit = last->before;
     last->function(last->object);
   }
+  for (Function* const* next = softcell_destructors_end; next != softcell_destructors;) (*--next)();
   _exit(status);
 }
 

@@ -1,5 +1,6 @@
 /* Its SPE reads a buffer before the transfer has been waited for, so that what it prints depends on luck.
- * Ends with a status, by main's return (forgets_to_wait STATUS) or without its exit handlers (forgets_to_wait STATUS _exit, quick_exit, abort). */
+ * Ends with a status, by main's return (forgets_to_wait STATUS) or without its exit handlers (forgets_to_wait STATUS _exit, quick_exit, abort); with
+ * `keeps` main returns and leaves the context. */
 #include <unistd.h>
 
 #include "run_in_thread.h"
@@ -13,6 +14,10 @@ int main(int argc, char** argv) {
   const char* const way = argc > 2 ? argv[2] : "return";
   spe_thread_t spe;
   start_spe(&spe, &breaks_rules, 0, (void*)7, words);
+  if (strcmp(way, "keeps") == 0) {
+    CHECK(pthread_join(spe.thread, NULL) == 0);
+    return status;
+  }
   printf("%d\n", end_spe(&spe));
   if (strcmp(way, "_exit") == 0) _exit(status);
   if (strcmp(way, "quick_exit") == 0) quick_exit(status);

@@ -33,6 +33,9 @@ int main(uint64_t, uint64_t argp, uint64_t envp) {
     case 9:
       spu_writech(99, 0);
       break;
+    case 10:
+      spu_stop(0x2101);
+      break;
     default:
       break;
   }

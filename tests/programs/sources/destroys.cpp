@@ -24,6 +24,9 @@ void make() {
   if constexpr (count > 1) make<count - 1>();
 }
 
+__attribute__((destructor)) void end_late() { std::printf("the first destructor function\n"); }
+__attribute__((destructor)) void end_early() { std::printf("the last destructor function\n"); }
+
 }  // namespace
 
 int main(unsigned long long, unsigned long long wants_too_much) {

@@ -42,8 +42,42 @@ static void floats(void) {
   CHECK(fpclassify(one - one) == FP_ZERO && isnormal(one) != 0);
 }
 
+/* What is a whole number, or another number of a few digits, is that number. (The arguments are no constants for the compiler.) */
+static void exact_results(void) {
+  volatile double x, y;
+  for (int base = 2; base <= 60; ++base) {
+    double expected = base;
+    for (int n = 1; expected * base < 0x1p53; ++n, expected *= base) {
+      x = base, y = n;
+      CHECK(pow(x, y) == expected && pow(-x, y) == (n % 2 == 0 ? expected : -expected));
+      y = 1.0 / n;
+      if (n == 2 || n == 4) CHECK(pow(expected, y) == base);
+    }
+  }
+  double expected = 1;
+  for (int n = 0; n <= 22; ++n, expected *= 10) {
+    x = expected;
+    CHECK(log10(x) == n);
+  }
+  x = 2, y = 1023;
+  CHECK(pow(x, y) == 0x1p1023 && pow(x, -1022) == 0x1p-1022 && pow(x, 1024) == HUGE_VAL && pow(x, -1080) == 0 && pow(x, -1) == 0.5);
+  y = HUGE_VAL;
+  CHECK(pow(x, y) == HUGE_VAL && pow(x, -y) == 0 && pow(y, x) == HUGE_VAL && pow(y, -x) == 0 && log10(y) == HUGE_VAL);
+  y = NAN;
+  CHECK(isnan(pow(x, y)) != 0 && isnan(pow(y, x)) != 0 && pow(y, 0) == 1);
+  x = 3e200, y = 4e200;
+  CHECK(near(hypot(x, y) * 1e-200, 5) && near(hypot(x * 1e-300, y) * 1e-200, 4) && hypot(HUGE_VAL, x) == HUGE_VAL && hypot(x * 1e108, x * 1e108) == HUGE_VAL);
+  x = 3e-200, y = 4e-200;
+  CHECK(near(hypot(x, y) * 1e200, 5) && near(hypot(x, 0) * 1e200, 3) && hypot(0, 0) == 0);
+  for (int n = 1; n <= 1000; ++n) {
+    x = 3.0 * n, y = -4.0 * n;
+    CHECK(hypot(x, y) == 5.0 * n);
+  }
+}
+
 int main(void) {
   functions();
+  exact_results();
   parts();
   floats();
   exit(failures);

@@ -32,6 +32,25 @@ static int sum(int n, const int values[n]) {
 enum colour { RED, GREEN = 5, BLUE };
 static char buffer[64] __attribute__((aligned(16)));
 
+static int counter;
+static _Atomic unsigned char flag;
+
+/* One thread runs here: these are plain operations. */
+static void atomic_operations(void) {
+  long long wide = 5;
+  short expected = 1, narrow = 1;
+  CHECK(__sync_fetch_and_add(&counter, 3) == 0 && __sync_sub_and_fetch(&counter, 1) == 2);
+  CHECK(__sync_bool_compare_and_swap(&counter, 2, 7) && __sync_val_compare_and_swap(&counter, 2, 9) == 7);
+  CHECK(__atomic_exchange_n(&wide, 6, __ATOMIC_SEQ_CST) == 5 && __atomic_load_n(&wide, __ATOMIC_ACQUIRE) == 6);
+  CHECK(__atomic_compare_exchange_n(&narrow, &expected, 4, 0, __ATOMIC_SEQ_CST, __ATOMIC_SEQ_CST) && narrow == 4);
+  CHECK(!__atomic_compare_exchange_n(&narrow, &expected, 5, 1, __ATOMIC_SEQ_CST, __ATOMIC_SEQ_CST) && expected == 4);
+  flag |= 6;
+  flag ^= 2;
+  flag += 1;
+  __sync_synchronize();
+  CHECK(flag == 5 && __atomic_fetch_nand(&counter, 3, __ATOMIC_RELAXED) == 7 && counter == ~3);
+}
+
 int main(void) {
   enum colour c = 5;
   void* anything = buffer;
@@ -58,5 +77,6 @@ int main(void) {
       int declared_late = 1;
       CHECK(declared_late);
   }
+  atomic_operations();
   return failures;
 }

@@ -32,11 +32,42 @@ static void numbers(void) {
   CHECK(strtol("  -0x1Fz", &end, 0) == -31 && *end == 'z' && atoi("42") == 42);
   CHECK(strtol("99999999999", NULL, 10) == LONG_MAX && strtoul("4294967295", NULL, 10) == ULONG_MAX);
   CHECK(strtol("-2147483648", NULL, 10) == LONG_MIN && strtoll("-12345678901", NULL, 10) == -12345678901ll);
+  CHECK(strtof("0.1", NULL) == 0.1f && strtof("-16777219", NULL) == -16777220 && strtof("16777217", NULL) == 16777216);
+  CHECK(strtof("1.1754944e-38", NULL) == 0x1p-126f && strtof("1e-39", NULL) == 0 && strtof("3.4028235e38", NULL) == 0x1.FFFFFEp127f);
   srand(5);
   for (int i = 0; i < 50; ++i) values[i] = rand() % 1000;
   qsort(values, 50, sizeof values[0], by_value);
   for (int i = 1; i < 50; ++i) CHECK(values[i - 1] <= values[i]);
   CHECK(bsearch(&values[17], values, 50, sizeof values[0], by_value) != NULL && div(-7, 2).rem == -1);
+}
+
+struct Named {
+  char name[100], kind;
+  int value;
+};
+static int by_value_of(const void* a, const void* b) {
+  return ((const struct Named*)a)->value - ((const struct Named*)b)->value;
+}
+
+/* Bytes that nobody has written may be copied with others. To be called while the heap is new. */
+static void copies_of_new_memory(void) {
+  struct Named* list = malloc(4 * sizeof list[0]);
+  for (int i = 0; i < 4; ++i) {
+    strcpy(list[i].name, "short");
+    list[i].kind = (char)i;
+    list[i].value = 4 - i;
+  }
+  struct Named* const copy = malloc(5 * sizeof list[0]);
+  memcpy(copy, list, 4 * sizeof list[0]);
+  memmove(copy + 1, copy, 4 * sizeof list[0]);
+  qsort(list, 4, sizeof list[0], by_value_of);
+  list = realloc(list, 8 * sizeof list[0]);
+  CHECK(list[0].value == 1 && list[3].value == 4 && list[0].kind == 3 && copy[4].value == 1 && strcmp(copy[4].name, "short") == 0);
+  char* const untouched = realloc(malloc(100), 300);
+  CHECK(untouched != NULL);
+  free(untouched);
+  free(copy);
+  free(list);
 }
 
 static void heap(void) {
@@ -81,6 +112,7 @@ int main(int argc, char** argv) {
   assert(failures == 0);
   strings();
   numbers();
+  copies_of_new_memory();
   heap();
   output();
   printf("%d failures of %s\n", failures, "library.c");

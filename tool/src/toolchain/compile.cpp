@@ -1,13 +1,21 @@
 #include "compile.h"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <cstdio>
+#include <fstream>
+#include <iostream>
+#include <stdexcept>
 #include <string_view>
 
 #include "toolchain_settings.h"
 
 namespace softcell::toolchain {
 namespace {
+
+constexpr std::string_view kStandardInput = "-";
 
 void append(Words& to, const Words& words) { to.insert(to.end(), words.begin(), words.end()); }
 
@@ -69,6 +77,7 @@ void compile_flavour(const Input& source, const std::filesystem::path& object, b
   // The compiler's messages are only printed for one flavour.
   const auto go = [&](const Words& command) {
     say(options, command);
+    if (source.file == kStandardInput) lseek(STDIN_FILENO, 0, SEEK_SET);
     if (const int status = run(command, checked); status != 0) throw Failed{status};
   };
   Words command = command_of(*source.language, checked, places);
@@ -93,6 +102,18 @@ void compile_flavour(const Input& source, const std::filesystem::path& object, b
 
 }  // namespace
 
+void keep_standard_input(const Options& options, ScratchFolder& scratch) {
+  const bool is_read = std::ranges::any_of(
+      options.inputs, [](const Input& input) { return input.file == kStandardInput && input.language; });
+  if (!is_read) return;
+  const auto kept = scratch.file("standard_input");
+  std::ofstream(kept, std::ios::binary) << std::cin.rdbuf();
+  const int file = open(kept.c_str(), O_RDONLY | O_CLOEXEC);
+  if (file < 0 || dup2(file, STDIN_FILENO) < 0)
+    throw std::runtime_error("standard input cannot be kept for the checked flavour");
+  close(file);
+}
+
 void compile(const Input& source, const std::filesystem::path& object, const Options& options,
              const Places& places, ScratchFolder& scratch) {
   compile_flavour(source, object, false, preprocessor_options(options, object), options, places, scratch);
@@ -108,6 +129,7 @@ void preprocess(const Options& options, const Places& places) {
     Words command = command_of(*input.language, false, places);
     append(command, options.preprocessor);
     append(command, options.compiler);
+    if (options.step == Step::kPreprocess) append(command, options.macros);
     if (options.step == Step::kPreprocess) command.push_back("-E");
     command.push_back(input.file);
     if (options.output) append(command, {"-o", *options.output});

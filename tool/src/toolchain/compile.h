@@ -13,6 +13,9 @@ namespace softcell::toolchain {
 
 inline constexpr const char kCheckedSection[] = ".softcell.checked";
 
+/// Standard input is read once; both flavours are compiled from what was read. Call it before compile().
+void keep_standard_input(const Options& options, ScratchFolder& scratch);
+
 /// Compiles one source. @throws Failed  the compiler has printed why.
 void compile(const Input& source, const std::filesystem::path& object, const Options& options,
              const Places& places, ScratchFolder& scratch);

@@ -15,6 +15,7 @@ namespace softcell::toolchain {
 namespace {
 
 constexpr std::uint32_t kLocalStoreBytes = 0x40000;
+constexpr std::uint32_t kNoBudget = 0x7FFF'FFFF;
 constexpr std::uint32_t kLeastStack = 4096, kMostStack = 0x20000;
 
 void append(Words& to, const Words& words) { to.insert(to.end(), words.begin(), words.end()); }
@@ -109,7 +110,6 @@ std::uint32_t stack_beside(const std::filesystem::path& image) {
 /// Call it after a link that has failed. If the program is too large, it says so with numbers; else the linker says what is wrong.
 void refuse_if_too_large(const Words& files, const std::filesystem::path& output, std::uint32_t stack,
                          const Options& options, const Places& places) {
-  constexpr std::uint32_t kNoBudget = 0x7FFF'FFFF;
   if (link_flavour(files, output, false, stack, options, places, true, kNoBudget) != 0) return;
   const std::uint64_t image = end_of(output), all = image + stack;
   std::filesystem::remove(output);
@@ -120,11 +120,14 @@ void refuse_if_too_large(const Words& files, const std::filesystem::path& output
                            std::to_string(kLocalStoreBytes));
 }
 
+std::uint32_t least_stack(bool checked, const Options& options) {
+  return options.stack_bytes.value_or(kLeastStack) + (checked ? settings::kCheckedStackBytes : 0);
+}
+
 /// Links a flavour with the largest stack for which there is room. @return  the linker's status.
 int link_with_stack(const Words& files, const std::filesystem::path& output, bool checked,
                     const Options& options, const Places& places, bool quiet) {
-  const std::uint32_t least =
-      options.stack_bytes.value_or(kLeastStack) + (checked ? settings::kCheckedStackBytes : 0);
+  const std::uint32_t least = least_stack(checked, options);
   // Quiet, because the link that follows prints the linker's messages.
   const int status = link_flavour(files, output, checked, least, options, places, true);
   if (status != 0 && !quiet) refuse_if_too_large(files, output, least, options, places);
@@ -155,6 +158,9 @@ void link(const Words& files, const std::filesystem::path& output, const Options
     }
     return;
   }
+  // A program's functions win over those of the library that have the same name, so the linker lets names be defined twice. What the
+  // program itself defines twice shows when its files are linked alone.
+  link_object(files, scratch.file("alone.o"));
   const auto whole = scratch.file("program.elf");
   if (const int status = link_with_stack(files, whole, false, options, places, false); status != 0)
     throw Failed{status};
@@ -163,7 +169,13 @@ void link(const Words& files, const std::filesystem::path& output, const Options
   if (has_checked) {
     add_section(whole, kCheckedSection, checked_output);
   } else {
-    const std::string why = missing.empty() ? "it does not fit into a local store" : missing + " has none";
+    std::string why = missing + " has none";
+    if (missing.empty()) {
+      // Where it does not link without a budget either, the linker says why.
+      const bool links = link_flavour(checked, checked_output, true, least_stack(true, options), options,
+                                      places, false, kNoBudget) == 0;
+      why = links ? "it does not fit into a local store" : "it does not link";
+    }
     std::fprintf(stderr, "softcell-spu-ld: note: %s gets no checked flavour: %s\n", output.c_str(),
                  why.c_str());
   }

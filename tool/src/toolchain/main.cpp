@@ -45,6 +45,8 @@ bool answer_question(const Words& words) {
     std::printf("%s\n", settings::kVersion);
   } else if (words[0] == "-dumpmachine") {
     std::printf("spu\n");
+  } else if (words[0] == "-v") {
+    std::fprintf(stderr, "softcell-spu-gcc (softcell) version %s\n", settings::kVersion);
   } else if (words[0] == "--help") {
     std::printf("%s", kHelp);
   } else {
@@ -68,6 +70,7 @@ int gcc(const std::string& command, const Words& words, Language language) {
     return 0;
   }
   ScratchFolder scratch;
+  keep_standard_input(options, scratch);
   Words files;
   for (const Input& input : options.inputs) {
     if (!input.language) {
@@ -81,6 +84,7 @@ int gcc(const std::string& command, const Words& words, Language language) {
     compile(input, object, options, places, scratch);
     files.push_back(object);
   }
+  if (options.step == Step::kCheck) return 0;
   return options.step == Step::kCompile && !options.relocatable
              ? 0
              : link_inputs(files, options, places, scratch);

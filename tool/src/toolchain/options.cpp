@@ -9,6 +9,7 @@
 #include <iterator>
 #include <stdexcept>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 namespace softcell::toolchain {
@@ -123,10 +124,13 @@ class Parser {
     } else if (word.starts_with("-x")) {
       take_language(value(word, "-x"));
     } else if (word == "-c") {
-      options_.step =
-          std::max(options_.step == Step::kLink ? Step::kCompile : options_.step, Step::kDependencies);
+      options_.step = std::min(options_.step, Step::kCompile);
     } else if (word == "-E") {
-      options_.step = Step::kPreprocess;
+      if (options_.step != Step::kDependencies) options_.step = Step::kPreprocess;
+    } else if (word == "-fsyntax-only") {
+      options_.step = std::min(options_.step, Step::kCheck);
+    } else if (is_any(word, "-dM", "-dD", "-dN", "-dI", "-dU")) {
+      options_.macros.push_back(word);
     } else if (word == "-S") {
       throw std::invalid_argument(
           "-S: there are no SPU instructions here, the program runs on the PC's processor; a real spu-gcc "
@@ -171,7 +175,7 @@ class Parser {
     return is_any(word, "-fsigned-char", "-funsigned-char", "-fno-strict-aliasing", "-fstrict-aliasing",
                   "-fwrapv", "-fpermissive", "-fcommon", "-fno-common", "-fgnu89-inline", "-fms-extensions",
                   "-fplan9-extensions", "-fshort-enums", "-fno-short-enums", "-fsigned-bitfields",
-                  "-funsigned-bitfields") ||
+                  "-funsigned-bitfields", "-fsingle-precision-constant", "-fshort-wchar") ||
            starts_with_any(word, "-fpack-struct", "-fmax-errors", "-fdiagnostics", "-ftemplate-depth");
   }
 
@@ -281,6 +285,12 @@ class Parser {
                                Input{*file, {}});
     }
     if (options_.inputs.empty()) throw std::invalid_argument("there are no input files");
+    for (const Input& input : options_.inputs) {
+      std::error_code none_there;
+      if (options_.output && std::filesystem::is_regular_file(input.file, none_there) &&
+          std::filesystem::equivalent(input.file, *options_.output, none_there))
+        throw std::invalid_argument("-o " + *options_.output + ": this file is an input, too");
+    }
     const bool one_output = options_.output && options_.step != Step::kLink && !options_.relocatable;
     const auto sources =
         std::ranges::count_if(options_.inputs, [](const Input& i) { return i.language.has_value(); });

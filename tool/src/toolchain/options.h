@@ -18,14 +18,15 @@ struct Input {
   std::optional<Language> language;  ///< none: input for the linker
 };
 
-/// The last step that the compiler takes.
-enum class Step : std::uint8_t { kDependencies, kPreprocess, kCompile, kLink };
+/// The last step that the compiler takes; kCheck compiles and writes nothing.
+enum class Step : std::uint8_t { kDependencies, kPreprocess, kCheck, kCompile, kLink };
 
 struct Options {
   Step step = Step::kLink;
   std::optional<std::string> output;
   std::vector<Input> inputs;  ///< in order; among them libraries of -l, as the files that were found for them
   Words preprocessor;         ///< -I, -D, -M..., for the preprocessor
+  Words macros;               ///< -dM and the like, for -E only
   Words compiler;             ///< warnings and options of the language
   Words linker;               ///< -Map and the like, in the form that ld takes
   std::optional<std::uint32_t> stack_bytes;  ///< -Wl,-z,stack-size=BYTES

@@ -9,6 +9,9 @@
 
 namespace softcell::ls_sim {
 
+/// What the load of an image leaves in the bytes that it does not have.
+inline constexpr std::byte kFiller{0xA5};
+
 /// 256 KB of readable, writable and executable memory, below 4 GB, so that a kernel's pointers have 32 bits as on an SPU. It is aligned to
 /// 256 KB, so that the low 18 bits of a pointer into it are the local-store address. On both sides lie 256 KB of inaccessible pages, so
 /// that a kernel that leaves the local store faults. Not copyable, not movable. Any thread may create one; its bytes belong to the SPE that

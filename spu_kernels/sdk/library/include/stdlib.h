@@ -43,7 +43,7 @@ unsigned long long strtoull(const char* text, char** end, int base);
 /// The nearest double of a number with up to 19 significant digits; more of them count only where these lie exactly between two doubles.
 /// What is smaller than the smallest normal double is 0, and what is too large infinite; both set errno to ERANGE.
 double strtod(const char* text, char** end);
-/// The float nearest to that double, where too large ones are the largest.
+/// The float nearest to that double, where too large ones are the largest and those below 2^-126 are 0.
 float strtof(const char* text, char** end);
 double atof(const char* text);
 
