@@ -41,7 +41,7 @@ inline T as_it_is_here(T x) {
 }
 
 constexpr double kLn2 = 0x1.62E42FEFA39EFp-1, kLog2e = 0x1.71547652B82FEp0, kPi = 0x1.921FB54442D18p1;
-constexpr double kLn10 = 0x1.26BB1BBB55516p1, kSqrt2 = 0x1.6A09E667F3BCDp0, kTwoOverPi = 2 / kPi;
+constexpr double kSqrt2 = 0x1.6A09E667F3BCDp0, kTwoOverPi = 2 / kPi;
 // Coefficients are constants: a compiler that must not round for itself would divide at each call.
 constexpr double kExponential[] = {
     1,          1.0 / 2,     1.0 / 6,      1.0 / 24,      1.0 / 120,      1.0 / 720,

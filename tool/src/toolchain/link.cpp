@@ -84,8 +84,12 @@ int link_flavour(const Words& files, const std::filesystem::path& output, bool c
   if (!checked) append(command, options.linker);
   append(command, files);
   append(command, {"-e", "softcell_start", "--gc-sections", "-z", "muldefs", "-u", "softcell_start"});
-  if (checked) command.push_back(places.access_reports);
-  command.push_back(checked ? places.checked_library : places.library);
+  if (checked) {
+    // Only the library may need the reports: a program may be one that accesses nothing itself.
+    append(command, {"--start-group", places.access_reports, places.checked_library, "--end-group"});
+  } else {
+    command.push_back(places.library);
+  }
   append(command, {"-o", output.string()});
   return run(command, quiet);
 }
