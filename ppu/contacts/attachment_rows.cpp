@@ -677,45 +677,43 @@ bool AttachmentRows<kDimension>::pushes_soft_body_only() const {
   return sides_.b == nullptr && sides_.rigid != nullptr && sides_.rigid->inverse_mass > 0;
 }
 
-template <int kDimension>
-void AttachmentRows<kDimension>::count_particles(std::vector<std::uint16_t>& attachments) const {
-  attachments.resize(sides_.a.positions.size());
-  for (const std::uint32_t i : patch_of(a_, rows_.front().a)) ++attachments[i];
-}
-
 /// The angular momentum that the soft body gets as pushes move particles, each with its momentum: a particle that follows the rigid body on
-/// an arc has gone straight on, and is pushed inwards. Pushes of attachments that contradict each other come again and again: no more counts
-/// than twice what arcs explain.
+/// an arc has gone straight on, and is pushed inwards. What arcs do not explain is left out, as it would drive the bodies.
 template <int kDimension>
-auto AttachmentRows<kDimension>::spin_of_pushes(std::span<const std::uint16_t> attachments) const -> Axial {
+auto AttachmentRows<kDimension>::spin_of_pushes() const -> Axial {
+  constexpr double kMost = 2, kAlike = 0.5;  // of what arcs explain; cosine
   using Wide = Eigen::Vector<double, kDimension>;
+  using Of = AttachedRigid<kDimension>;
   const AttachedBody<kDimension>& body = sides_.a;
   const double step = double{step_};
-  Axial sum = turning::cross(Wide::Zero().eval(), Wide::Zero().eval());
-  double most = 0;
+  Axial sum = turning::cross(Wide::Zero().eval(), Wide::Zero().eval()), of_arcs = sum;
   for (const std::uint32_t i : patch_of(a_, rows_.front().a)) {
-    const double share = attachments.empty() ? 1.0 : 1.0 / attachments[i];
-    const Wide momentum = body.velocities[i].template cast<double>() / double{body.inverse_masses[i]};
-    const Wide way = share * step * body.pushes[i].template cast<double>();
-    const Wide curve =
-        AttachedRigid<kDimension>::curve(*sides_.rigid, body.positions[i]).template cast<double>();
-    sum += turning::cross(way, momentum);
-    most += step * step * curve.norm() * momentum.norm();
+    const double mass = 1 / double{body.inverse_masses[i]};
+    const Vector& place = body.positions[i];
+    const Wide way = step * body.pushes[i].template cast<double>();
+    sum += turning::cross(way, (mass * body.velocities[i].template cast<double>()).eval());
+    const Wide arc = 0.5 * step * step * Of::curve(*sides_.rigid, place).template cast<double>();
+    const Wide carried = Of::velocity_at(*sides_.rigid, place).template cast<double>();
+    of_arcs += turning::cross(arc, (mass * carried).eval());
   }
-  const double size = turning::length_of(sum);
+  const double size = turning::length_of(sum), most = kMost * turning::length_of(of_arcs);
+  if (!(turning::dot(sum, of_arcs) > kAlike * size * turning::length_of(of_arcs))) return Axial(0 * sum);
   return size > most ? Axial(most / size * sum) : sum;
 }
 
 template <int kDimension>
-void AttachmentRows<kDimension>::take_back_spin(std::span<const std::uint16_t> attachments) {
+void AttachmentRows<kDimension>::take_back_spin(bool is_alone) {
   if (!takes_back_spin()) return;
   Axial given = turning::cross(Eigen::Vector<double, kDimension>::Zero().eval(),
                                Eigen::Vector<double, kDimension>::Zero().eval());
-  for (const Row& row : rows_) {
-    const Vector apart = a_.of(row.a, sides_.a.positions) - row.point;
-    given += turning::cross(apart.template cast<double>().eval(), row.impulse.template cast<double>().eval());
-  }
-  if (pushes_soft_body_only()) given += spin_of_pushes(attachments);
+  // Without compliance, the ends of attachments that contradict each other are apart.
+  if (softness_ > 0 || is_alone)
+    for (const Row& row : rows_) {
+      const Vector apart = a_.of(row.a, sides_.a.positions) - row.point;
+      given +=
+          turning::cross(apart.template cast<double>().eval(), row.impulse.template cast<double>().eval());
+    }
+  if (pushes_soft_body_only() && is_alone) given += spin_of_pushes();
   TurnedPatches<kDimension> patches;
   patches.add(sides_.a, patch_of(a_, rows_.front().a));
   if (sides_.b != nullptr) patches.add(*sides_.b, patch_of(b_, rows_.front().b));

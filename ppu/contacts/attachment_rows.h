@@ -127,11 +127,9 @@ class AttachmentRows {
   /// Takes back the angular momentum that an attachment has added by error: if it is compliant its ends are apart, so its two impulses do
   /// not lie on one line if the ends also move sideways; and particles that follow a rigid body are pushed while they move. It turns the
   /// patches of soft bodies, no rigid body. Call it after finish() of all attachments, or after a kernel.
-  /// @param attachments  of each of a's particles, as count_particles() of all has counted them; empty: there is only this one
-  void take_back_spin(std::span<const std::uint16_t> attachments);
+  /// @param is_alone  a has no other attachment: those that contradict each other push again and again, which would count each time
+  void take_back_spin(bool is_alone);
   bool takes_back_spin() const;
-  /// Adds 1 for each of a's particles that is in the patch.
-  void count_particles(std::vector<std::uint16_t>& attachments) const;
 
   /// Whether the impulse after the last iteration of the last substep exceeds the break force.
   bool broke() const { return broke_; }
@@ -149,7 +147,7 @@ class AttachmentRows {
   };
   using Axial = turning::Axial<kDimension>;
   bool pushes_soft_body_only() const;
-  Axial spin_of_pushes(std::span<const std::uint16_t> attachments) const;
+  Axial spin_of_pushes() const;
   struct Side {
     std::vector<std::uint32_t> particle;
     std::vector<float> share;

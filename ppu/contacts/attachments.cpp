@@ -95,11 +95,7 @@ void Attachments<kDimension>::finish() {
 
 template <int kDimension>
 void Attachments<kDimension>::take_back_spin() {
-  sharing_.resize(std::max(sharing_.size(), attached_to_.size()));
-  for (std::vector<std::uint16_t>& sharing : sharing_) sharing.clear();
-  for (const Solved& solved : solved_)
-    if (attached_to_[solved.sides.a] > 1) solved.rows->count_particles(sharing_[solved.sides.a]);
-  for (const Solved& solved : solved_) solved.rows->take_back_spin(sharing_[solved.sides.a]);
+  for (const Solved& solved : solved_) solved.rows->take_back_spin(attached_to_[solved.sides.a] == 1);
 }
 
 template <int kDimension>

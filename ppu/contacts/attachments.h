@@ -104,8 +104,6 @@ class Attachments final : public AttachmentSolver<kDimension> {
   std::vector<AttachmentInStep<kDimension>> all_;
   std::vector<Solved> solved_;  // the attachments with a side that may move
   std::vector<std::pair<std::uint32_t, std::uint32_t>> parted_;
-  std::vector<std::vector<std::uint16_t>>
-      sharing_;  // of bodies with several attachments: of each particle, how many it has
   std::vector<std::uint32_t> attached_to_;  // soft bodies, then rigid ones: how many of solved_ each has
 };
 

@@ -660,10 +660,12 @@ class ObstacleContacts {
 
   /// Where a corner that is at a place of the body at the substep's end is at its beginning: metres from the surface, below 0 inside. To go
   /// back from the end with the velocities leaves errors where the body bends, and what rests on it would tremble.
-  /// @param normal  of the surface at the end   @return none: it moves far within the body, or was near another face
+  /// @param normal  of the surface at the end   @return none: it moves far within the body, was near another face, or attachments hold the
+  ///                body: what presses on it is solved with what holds it
   std::optional<float> distance_before(const DeformedPlace& place, const Vector3f& corner,
                                        const Vector3f& normal) const {
     constexpr float kFar = 0.1f, kClose = 0.01f;  // cells
+    if (!body_.inverse_masses_if_held.empty()) return {};
     const Vector3f xi = opposite(body_, place, corner);
     if ((place.xi - xi).norm() > kFar) return {};
     const Vector3f found = anchor_in_cell(body_.lattice(), place.cell, xi).of(body_.positions);

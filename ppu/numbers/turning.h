@@ -29,6 +29,8 @@ inline Eigen::Matrix3d inertia_of(const Eigen::Matrix3d& second_moment) {
 inline Eigen::Matrix3d inverse(const Eigen::Matrix3d& inertia) { return inertia.inverse(); }
 inline Eigen::Vector3f to_float(const Eigen::Vector3d& axial) { return axial.cast<float>(); }
 
+inline double dot(double a, double b) { return a * b; }
+inline double dot(const Eigen::Vector3d& a, const Eigen::Vector3d& b) { return a.dot(b); }
 inline double length_of(double axial) { return std::abs(axial); }
 inline double length_of(const Eigen::Vector3d& axial) { return axial.norm(); }
 
