@@ -41,7 +41,7 @@ float KnownSides::side_of(std::uint32_t rigid, std::uint32_t part, int seen) {
 float KnownSides::side_of_sheet(std::uint32_t rigid, std::uint32_t part, std::span<const Triangle> triangles,
                                 const TriangleSheets& sheets, const SheetSeen& sheet) {
   const auto has_sheet = [&](const Side& side) {
-    if (side.rigid != rigid || side.part != part || !side.sheet) return false;
+    if (!of(rigid, part)(side) || !side.sheet) return false;
     const auto known = std::ranges::find(triangles, *side.sheet);
     return known != triangles.end() &&
            sheets.of(static_cast<std::size_t>(known - triangles.begin())) == sheet.sheet;
@@ -54,9 +54,8 @@ float KnownSides::side_of_sheet(std::uint32_t rigid, std::uint32_t part, std::sp
 }
 
 bool KnownSides::knows_sheets(std::uint32_t rigid, std::uint32_t part) const {
-  return std::ranges::any_of(sides_, [&](const Side& side) {
-    return side.rigid == rigid && side.part == part && side.sheet.has_value();
-  });
+  return std::ranges::any_of(
+      sides_, [&](const Side& side) { return of(rigid, part)(side) && side.sheet.has_value(); });
 }
 
 auto KnownSides::track(std::uint32_t rigid, std::uint32_t part) const -> std::optional<Track> {

@@ -61,7 +61,7 @@ class KnownSides {
     return [=](const auto& known) { return known.rigid == rigid && known.part == part; };
   }
   static constexpr auto of_whole(std::uint32_t rigid, std::uint32_t part) {
-    return [=](const auto& known) { return known.rigid == rigid && known.part == part && !known.sheet; };
+    return [=](const Side& known) { return of(rigid, part)(known) && !known.sheet; };
   }
   struct Side {
     std::uint32_t rigid, part;

@@ -418,7 +418,7 @@ bool PlasticFlow<kDimension>::flow(std::span<const Vector> x, const SumPlan& sum
     std::vector<Exact> shape = new_shape();
     if (stop_bad_cells(shape)) continue;
     rest_before_ = std::exchange(rest_, std::move(shape));
-    inverse_squares_before_ = inverse_squares_;
+    inverse_squares_before_.swap(inverse_squares_);
     find_inverse_squares();
     return true;
   }

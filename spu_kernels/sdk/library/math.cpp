@@ -243,18 +243,21 @@ double exponential_of_2(double x) {
 }
 double exponential_less_1(double x) { return size_of(x) < 0.34 ? small_exponential(x) : exponential(x) - 1; }
 
-/// ln x = exponent ln 2 + ln m, of x > 0. 1/sqrt(2) < m <= sqrt(2)
+/// m of x = m 2^exponent, of x > 0. 1/sqrt(2) < m <= sqrt(2)
+double parted_near_1(double x, int* exponent) {
+  const double m = 2 * parted(x, exponent);
+  if (m > kSqrt2) return 0.5 * m;
+  --*exponent;
+  return m;
+}
+
+/// ln x = exponent ln 2 + ln m, of x > 0.
 struct Logarithm {
   double exponent, of_part;
 };
 Logarithm logarithm(double x) {
   int exponent;
-  double m = 2 * parted(x, &exponent);
-  --exponent;
-  if (m > kSqrt2) {
-    m *= 0.5;
-    ++exponent;
-  }
+  const double m = parted_near_1(x, &exponent);
   const double s = (m - 1) / (m + 1), q = s * s;
   const double series = polynomial(q, kLogarithm);
   return {static_cast<double>(exponent), 2 * s * series};
@@ -299,12 +302,7 @@ constexpr Pair kThird{0x1.5555555555555p-2, 0x1.5555555555555p-56},
 /// ln x to 2^-65 of it, of 0 < x < infinity: exponent ln 2 + 2 artanh s, s = (m - 1) / (m + 1).
 Pair precise_logarithm(double x) {
   int exponent;
-  double m = 2 * parted(x, &exponent);
-  --exponent;
-  if (m > kSqrt2) {
-    m *= 0.5;
-    ++exponent;
-  }
+  const double m = parted_near_1(x, &exponent);
   const Pair above = sum(m, 1);
   const double below = m - 1, quotient = below / above.high;
   const Pair s =
