@@ -225,7 +225,9 @@ std::uint32_t Box2dAttachments::number_of(b2Body& rigid, float step) {
   added.velocity = to_eigen(rigid.GetLinearVelocity());
   added.spin = rigid.GetAngularVelocity();
   if (rigid.GetType() == b2_dynamicBody) {
-    added.velocity += to_eigen(fall_of(rigid, world_.GetGravity(), step));
+    const VelocityGain gain = velocity_gain(rigid, world_.GetGravity(), step);
+    added.velocity += to_eigen(gain.linear);
+    added.spin += gain.angular;
     added.inverse_mass = inverse_mass_of(rigid);
     added.inverse_inertia = inverse_inertia_of(rigid);
   }
@@ -233,13 +235,14 @@ std::uint32_t Box2dAttachments::number_of(b2Body& rigid, float step) {
   return static_cast<std::uint32_t>(rigids_.size() - 1);
 }
 
-/// Takes the step's gravity out of velocities, as Box2D adds it after this.
+/// Takes what the step's forces add out of velocities, as Box2D adds it after this.
 void Box2dAttachments::move_rigids(float step) const {
   for (std::size_t i = 0; i < rigids_.size(); ++i) {
     b2Body& rigid = *rigid_bodies_[i];
     if (rigid.GetType() != b2_dynamicBody) continue;
-    rigid.SetLinearVelocity(to_box2d(rigids_[i].velocity) - fall_of(rigid, world_.GetGravity(), step));
-    rigid.SetAngularVelocity(rigids_[i].spin);
+    const VelocityGain gain = velocity_gain(rigid, world_.GetGravity(), step);
+    rigid.SetLinearVelocity(to_box2d(rigids_[i].velocity) - gain.linear);
+    rigid.SetAngularVelocity(rigids_[i].spin - gain.angular);
   }
 }
 

@@ -155,10 +155,9 @@ void Box2dObstacles::begin(b2World& world, float step, float layer) {
     if (is_under_way(*body)) moving_.push_back(body);
 }
 
-/// The velocity without contacts: Box2D adds gravity later in its step.
-b2Vec2 Box2dObstacles::velocity_of(const b2Body& body) const {
-  const b2Vec2 velocity = body.GetLinearVelocity();
-  return body.IsAwake() ? velocity + fall_of(body, world_->GetGravity(), step_) : velocity;
+/// What Box2D will add to a body's velocities later in its step, where it touches nothing.
+VelocityGain Box2dObstacles::gain_of(const b2Body& body) const {
+  return body.IsAwake() ? velocity_gain(body, world_->GetGravity(), step_) : VelocityGain{};
 }
 
 /// Box2D has a box around the fixture's last place; for a body that moves, this also covers its motion.
@@ -166,9 +165,10 @@ b2AABB Box2dObstacles::box_of_step(const b2Fixture& fixture, int child) const {
   b2AABB box = fixture.GetAABB(child);
   const b2Body& body = *fixture.GetBody();
   if (!is_under_way(body)) return box;
-  const b2Vec2 way = step_ * velocity_of(body), centre = body.GetWorldCenter();
+  const VelocityGain gain = gain_of(body);
+  const b2Vec2 way = step_ * (body.GetLinearVelocity() + gain.linear), centre = body.GetWorldCenter();
   const b2Vec2 arm = b2Max(b2Abs(box.lowerBound - centre), b2Abs(box.upperBound - centre));
-  const float turn = step_ * std::abs(body.GetAngularVelocity()) * arm.Length();
+  const float turn = step_ * std::abs(body.GetAngularVelocity() + gain.angular) * arm.Length();
   box.lowerBound += b2Min(way, b2Vec2_zero) - b2Vec2(turn, turn);
   box.upperBound += b2Max(way, b2Vec2_zero) + b2Vec2(turn, turn);
   return box;
@@ -260,8 +260,9 @@ std::uint32_t Box2dObstacles::rigid_of(b2Body& body) {
   ContactRigid rigid;
   rigid.number = number(body);
   rigid.centre = lifted(body.GetWorldCenter());
-  rigid.velocity = lifted(velocity_of(body));
-  rigid.spin = {0, 0, body.GetAngularVelocity()};
+  const VelocityGain gain = gain_of(body);
+  rigid.velocity = lifted(body.GetLinearVelocity() + gain.linear);
+  rigid.spin = {0, 0, body.GetAngularVelocity() + gain.angular};
   rigid.friction = 1;  // each fixture has its own
   for (const b2Fixture* fixture = body.GetFixtureList(); fixture != nullptr; fixture = fixture->GetNext())
     rigid.restitution = std::max(rigid.restitution, fixture->GetRestitution());

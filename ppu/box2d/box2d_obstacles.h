@@ -90,7 +90,7 @@ class Box2dObstacles {
   class Collector;
 
   void number_bodies();
-  b2Vec2 velocity_of(const b2Body& body) const;
+  VelocityGain gain_of(const b2Body& body) const;
   b2AABB box_of_step(const b2Fixture& fixture, int child) const;
   int face_before(const Found& found, const Bounds<3>& box, const Eigen::Vector2f& middle) const;
   std::uint32_t obstacle_of(const Found& found, int face);

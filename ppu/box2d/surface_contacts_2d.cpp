@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "ppu/contacts/overlap.h"
 #include "ppu/contacts/piece_sides.h"
@@ -216,11 +217,14 @@ void SurfaceContacts2d::move(Bodies bodies, float step) {
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     if (in_stage_[i].asleep) continue;
     SoftBody<2>& soft = bodies[i]->soft();
+    MeanSpeed real;
     for (std::size_t p = 0; p < soft.positions().size(); ++p) {
       const Vector2f velocity = FlatLayer::lower(stage_.velocities(i), p);
-      const Vector2f push = FlatLayer::lower(stage_.pushes(i), p);
-      soft.set_particle(p, soft.position(p) + step * (velocity + push), velocity);
+      const Vector2f moved = velocity + FlatLayer::lower(stage_.pushes(i), p);
+      soft.set_particle(p, soft.position(p) + step * moved, velocity);
+      if (stage_.is_crushed(i)) real.add(soft.model().masses()[p], moved);
     }
+    bodies[i]->set_real_speed(stage_.is_crushed(i) ? std::optional(real.value()) : std::nullopt);
     kept_.at(bodies[i].get()).place_of_sides = soft.position(0);
   }
 }

@@ -186,6 +186,13 @@ Vector3f velocity_in(float step, const btRigidBody& body) {
   return velocity + step * body.getInvMass() * to_eigen(body.getTotalForce());
 }
 
+/// The spin without contacts: Bullet adds torques later in its step.
+Vector3f spin_in(float step, const btRigidBody& body) {
+  const Vector3f spin = to_eigen(body.getAngularVelocity());
+  if (body.isStaticOrKinematicObject()) return spin;
+  return spin + step * (to_eigen(body.getInvInertiaTensorWorld()) * to_eigen(body.getTotalTorque()));
+}
+
 /// As in Bullet's own solver, the factors multiply what impulses do along the world's axes, and about them.
 void set_mobility(const btRigidBody& body, ContactRigid& rigid) {
   const Vector3f linear = to_eigen(body.getLinearFactor()), angular = to_eigen(body.getAngularFactor());
@@ -217,8 +224,7 @@ Way way_of(const btCollisionObject& object, float step) {
   btVector3 centre;
   btScalar radius = 0;
   body->getCollisionShape()->getBoundingSphere(centre, radius);
-  return {step * velocity_in(step, *body),
-          step * body->getAngularVelocity().length() * (centre.length() + radius)};
+  return {step * velocity_in(step, *body), step * spin_in(step, *body).norm() * (centre.length() + radius)};
 }
 
 /// The box around a box with that motion.
@@ -336,7 +342,7 @@ std::uint32_t BulletObstacles::rigid_of(btCollisionObject& object) {
   rigid.restitution = object.getRestitution();
   if (const btRigidBody* const body = btRigidBody::upcast(&object)) {
     rigid.velocity = velocity_in(step_, *body);
-    rigid.spin = to_eigen(body->getAngularVelocity());
+    rigid.spin = spin_in(step_, *body);
     if (!body->isStaticOrKinematicObject()) set_mobility(*body, rigid);
   }
   rigids_.push_back(rigid);
