@@ -76,13 +76,13 @@ void SurfaceContacts2d::lift(const Box2dBody& body, Kept& kept, float step) {
 
 /// Attached bodies do not sleep: wakes the rigid ones.
 void SurfaceContacts2d::begin_attachments(Bodies bodies, Box2dAttachments& attachments, float step) {
-  const auto number_of = [&](b2Body& rigid) {
+  const auto in_step_of = [&](b2Body& rigid) {
     if (rigid.GetType() == b2_dynamicBody) rigid.SetAwake(true);
-    return obstacles_.rigid_of(rigid);
+    return Box2dAttachments::RigidInStep{obstacles_.rigid_of(rigid), obstacles_.pose_of(rigid)};
   };
   attachments_.clear();
   attached_rigids_.clear();
-  for (const AttachmentInStep<2>& attachment : attachments.begin(bodies, number_of, step)) {
+  for (const AttachmentInStep<2>& attachment : attachments.begin(bodies, in_step_of, step)) {
     attachments_.add(attachment);
     if (attachment.rigid != AttachmentInStep<2>::kNone) attached_rigids_.push_back(attachment.rigid);
   }

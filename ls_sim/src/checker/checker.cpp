@@ -1,6 +1,7 @@
 #include "checker.h"
 
 #include <algorithm>
+#include <bit>
 #include <span>
 #include <utility>
 
@@ -15,7 +16,9 @@ using dma::CommandKind;
 using dma::MfcOpcode;
 using dma::Rule;
 
-constexpr std::uint32_t kListStallStatus = 25, kListStallAck = 26, kAtomicStatus = 27;
+constexpr std::uint32_t kEventStatus = 0, kListStallStatus = 25, kListStallAck = 26, kAtomicStatus = 27;
+constexpr std::uint32_t kAllTags = 2;         // what MFC_WrTagUpdate waits for
+constexpr std::uint32_t kTagStatusEvent = 1;  // of SPU_RdEventStat
 
 std::string hex(std::uint32_t lsa) {
   static constexpr char kDigits[] = "0123456789ABCDEF";
@@ -374,7 +377,10 @@ void Checker::end_reservation(const dma::MfcCommand& by) {
 
 ChannelReply Checker::count(std::uint32_t channel) {
   check_code(to_.engine.position());
-  return to_.channels.count(channel);
+  ChannelReply reply = to_.channels.count(channel);
+  if (!reply.fault && reply.value != 0 && channel == static_cast<std::uint32_t>(Channel::kMfcRdTagStat))
+    on_tag_status();
+  return reply;
 }
 
 ChannelReply Checker::write(std::uint32_t channel, std::uint32_t value) {
@@ -390,6 +396,7 @@ ChannelReply Checker::write(std::uint32_t channel, std::uint32_t value) {
 void Checker::on_tag_update(std::uint32_t condition) {
   is_waiting_ = condition != 0;
   asked_at_ = in_flight_.last_number();
+  awaited_ = condition == kAllTags || std::has_single_bit(tag_mask_) ? tag_mask_ : 0;
   if (!is_waiting_ || (tag_mask_ & tags_issued_) != 0) return;
   std::string tags;
   for (std::uint32_t tag = 0; tag < dma::kTagCount; ++tag) {
@@ -397,6 +404,11 @@ void Checker::on_tag_update(std::uint32_t condition) {
   }
   report(Rule::kTagWithoutCommand, to_.engine.position(),
          tags.empty() ? "the tag mask is empty" : tags + ": no command since the last wait");
+}
+
+/// The tag status is there, as its channel's count or its event says, and not yet read: the tags that it waited for are complete.
+void Checker::on_tag_status() {
+  if (is_waiting_) complete(awaited_);
 }
 
 ChannelReply Checker::read(std::uint32_t channel) {
@@ -407,6 +419,7 @@ ChannelReply Checker::read(std::uint32_t channel) {
     complete(reply.value);
     if (is_waiting_) tags_issued_ &= ~reply.value;
   }
+  if (channel == kEventStatus && (reply.value & kTagStatusEvent) != 0) on_tag_status();
   if (channel == kListStallStatus) on_list_stall(reply.value);
   if (channel == kAtomicStatus) status_unread_.reset();
   return reply;

@@ -138,6 +138,7 @@ class Checker final : public ChannelPort, public AccessObserver {
   void end_reservation(const dma::MfcCommand& by);
   void complete(std::uint32_t tags);
   void on_tag_update(std::uint32_t condition);
+  void on_tag_status();
   void on_list_stall(std::uint32_t tags);
   void on_list_acknowledged(std::uint32_t tag);
 
@@ -166,8 +167,9 @@ class Checker final : public ChannelPort, public AccessObserver {
   std::uint32_t tag_mask_ = 0;
   std::uint32_t tags_issued_ = 0;  ///< since each was last waited for
   bool stack_overflow_known_ = false;
-  bool is_waiting_ = false;                  ///< the open tag-status request is one that waits
-  std::uint64_t asked_at_ = 0;               ///< number of the last command when the request was made
+  bool is_waiting_ = false;     ///< the open tag-status request is one that waits
+  std::uint32_t awaited_ = 0;   ///< the tags that it waits for, all of them; 0: it waits for any of several
+  std::uint64_t asked_at_ = 0;  ///< number of the last command when the request was made
   std::optional<QuadwordStore> last_store_;  ///< not yet looked at
   std::optional<LineCommand> status_unread_;
   std::optional<LineCommand> reservation_;

@@ -4,6 +4,8 @@
 #include <box2d/b2_chain_shape.h>
 #include <box2d/b2_circle_shape.h>
 #include <box2d/b2_edge_shape.h>
+#include <box2d/b2_motor_joint.h>
+#include <box2d/b2_mouse_joint.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -477,6 +479,60 @@ TEST_P(FlatContacts, AForceOnABoxPressesAsItsWeightDoes) {
   }
   EXPECT_NEAR(pressing, force + box->GetMass() * 9.81f, 0.02f * force);  // in one second
   EXPECT_LT(DrawnFlat(body).depth(corners_of(*box, {0.6f, 0.2f})), 0.05f);
+}
+
+/// Of the force that a joint has at most: it pulls with all of it, towards a place far below.
+TEST_P(FlatContacts, JointsPressWithTheirForce) {
+  for (const bool by_mouse : {true, false}) {
+    const auto w = world();
+    b2Body* const ground = w->add_box({0, -1}, {10, 1});
+    SoftBody<2>& body = w->soft.add(rectangle_model({8, 4}, calm()), {0, 0.13f});
+    b2Body* const box = w->add_box({0, 1.4f}, {0.6f, 0.2f}, 5);
+    const float weight = box->GetMass() * 9.81f, force = 8 * weight;
+    if (by_mouse) {
+      b2MouseJointDef joint;
+      joint.bodyA = ground, joint.bodyB = box;
+      joint.target = box->GetPosition();
+      joint.maxForce = force;
+      joint.stiffness = 1000 * box->GetMass(), joint.damping = 20 * box->GetMass();
+      static_cast<b2MouseJoint*>(w->box2d.CreateJoint(&joint))->SetTarget({0, -20});
+    } else {
+      b2MotorJointDef joint;
+      joint.Initialize(ground, box);
+      joint.linearOffset = {0, -20};
+      joint.maxForce = force, joint.maxTorque = weight;
+      w->box2d.CreateJoint(&joint);
+    }
+    float pressing = 0;
+    for (int i = 0; i < 1200; ++i) {
+      w->soft.step(kStep2d);
+      if (i < 1080) continue;
+      for (const Contact2d& contact : w->soft.contacts())
+        if (contact.rigid == box) pressing += contact.impulse * std::abs(contact.normal.y());
+    }
+    EXPECT_NEAR(pressing, force + weight, 0.03f * force) << by_mouse;  // in one second
+    EXPECT_NEAR(box->GetPosition().x, 0, 0.1f) << by_mouse;
+    EXPECT_LT(DrawnFlat(body).depth(corners_of(*box, {0.6f, 0.2f})), 0.05f) << by_mouse;
+  }
+}
+
+/// Doors of games: Box2D knows no velocity of them.
+TEST_P(FlatContacts, WhatIsMovedByItsPlacePushesABodyAlong) {
+  for (const b2BodyType type : {b2_staticBody, b2_kinematicBody})
+    for (const float speed : {0.5f, 2.0f, 5.0f}) {
+      const auto w = world();
+      w->add_box({0, -1}, {30, 1});
+      const SoftBody<2>& body = w->soft.add(rectangle_model({4, 4}, calm()), {0, 0.13f});
+      const DrawnFlat drawn(body);
+      b2Body* const door = w->add_box({-1.2f, 1.01f}, {0.2f, 1});
+      door->SetType(type);
+      for (int i = 1; i <= 90; ++i) {
+        door->SetTransform({-1.2f + speed * kStep2d * static_cast<float>(i), 1.01f}, 0);
+        w->soft.step(kStep2d);
+        for (const Vector2f& at : drawn.edge())
+          ASSERT_GT(at.x(), door->GetPosition().x + 0.2f - 0.1f * 0.25f) << speed << " m/s, step " << i;
+      }
+    }
 }
 
 TEST_P(FlatContacts, ATorqueOnABoxPressesItsCorners) {
