@@ -58,7 +58,8 @@ SC_C_8_16_32(SC_C_COMPARED, )
   SC_C_INLINE V softcell_c_splats_##V(S s_) {                                    \
     S lanes[16 / sizeof(S)];                                                     \
     V v_;                                                                        \
-    for (unsigned int i_ = 0; i_ < 16 / sizeof(S); ++i_) lanes[i_] = s_;         \
+    unsigned int i_;                                                             \
+    for (i_ = 0; i_ < 16 / sizeof(S); ++i_) lanes[i_] = s_;                      \
     __builtin_memcpy(&v_, lanes, 16);                                            \
     return v_;                                                                   \
   }                                                                              \
@@ -243,7 +244,7 @@ SC_C_SPLAT(vec_double2, double)
     __auto_type sc_1 = (s);                      \
     SC_C_PICK(SC_C_SCALARS, splats, sc_1)(sc_1); \
   })
-#define spu_promote(s, element) ((void)(element), spu_splats(s))
+#define spu_promote(s, element) (((void)(element), spu_splats(s)))
 #define spu_insert(s, a, element)                                   \
   __extension__({                                                   \
     __auto_type sc_1 = (s);                                         \
