@@ -121,6 +121,9 @@ TEST(RunVerb, HoldsTransfersAgainstTheBlocksOfTheHeap) {
   EXPECT_TRUE(has(run, "40 of 64 bytes lie in 40 bytes at")) << run.output;
   EXPECT_TRUE(has(run, "allocated by make_block at overruns_a_block.c:")) << run.output;
   EXPECT_EQ(run_softcell("run --allocations -- " + kPingPong).status, 0);
+  const CommandResult mapped =
+      run_softcell("run --allocations -- " LIBSPE2_PROGRAMS "/libspe2_maps_a_freed_block");
+  EXPECT_EQ(mapped.status, 0) << "the pages are the program's again: " << mapped.output;
 }
 
 TEST(RunVerb, RecordsATrace) {
