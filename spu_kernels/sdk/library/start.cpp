@@ -69,6 +69,7 @@ void exit(int status) {
     at_exit = last->before;
     last->function(last->object);
   }
+  at_exit_count = 0;  // an SPE context may run the program again
   for (Function* const* next = softcell_destructors_end; next != softcell_destructors;) (*--next)();
   _exit(status);
 }
