@@ -389,7 +389,8 @@ SC_C_INLINE void softcell_halt_if(int condition) {
 
 /* What compiles on an SPU and has no meaning here is refused where it is used, with the reason. */
 __attribute__((error(
-    "FPSCR is not modelled on the host: doubles round to nearest, and there are no sticky flags"))) vec_uint4
+    "FPSCR is not modelled on the host: spu_* of doubles round to nearest, and there are no sticky flags")))
+vec_uint4
 softcell_no_fpscr(void);
 __attribute__((error("special purpose registers are not modelled on the host"))) unsigned int
 softcell_no_special_register(void);
