@@ -124,6 +124,16 @@ file(WRITE ${lab}/own_end.c "int end = 4; static int edata(void) { return end + 
 step("names of the linker that a program has itself" ${gcc} ${lab}/own_end.c -o ${lab}/own_end)
 says(1 "ended with status 5" ${BIN}/softcell spu run ${lab}/own_end)
 
+# Files that are named relative to where the compiler ran.
+file(MAKE_DIRECTORY ${lab}/from ${lab}/headers)
+file(WRITE ${lab}/headers/covered.h "static inline int covered(volatile int* number) { return *number * 2; }\n")
+file(WRITE ${lab}/headers/also.h "static inline int also(volatile int* number) { return *number * 3; }\n")
+file(WRITE ${lab}/covered.c "#include <covered.h>\n#include \"headers/also.h\"\nvolatile int number = 1;\n"
+  "int main(void) { return covered(&number) + also(&number); }\n")
+step("a program of relative names" sh -c "cd ${lab}/from && ${gcc} -g -I../headers ../covered.c -o ../covered")
+says(1 "ended with status 5" ${BIN}/softcell spu run --coverage ${lab}/covered.info ${lab}/covered)
+says(0 "SF:${lab}/covered.c\n[^/]*SF:${lab}/headers/also.h\n[^/]*SF:${lab}/headers/covered.h\n" cat ${lab}/covered.info)
+
 # Vectors in headers of -isystem, which give no warnings.
 file(WRITE ${lab}/system/first.h "#include <spu_intrinsics.h>\nstatic int unused;\n#define FIRST(v) spu_extract((vec_uchar16)(v), 0)\n"
   "static inline int first(vector unsigned int v) { return spu_extract((vec_uchar16)v, 0) + FIRST(v); }\n")
