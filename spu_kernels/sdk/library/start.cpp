@@ -79,6 +79,8 @@ void _exit(int status) {
   __builtin_trap();  // a run that has ended is not resumed
 }
 
+char* getenv(const char*) { return nullptr; }
+
 void abort() {
   fputs("abort() was called\n", stderr);
   _exit(1);
