@@ -126,7 +126,12 @@ int owns(std::uint64_t address) {
   SoftcellAllocation block{};
   if (last_at_or_below(address, &block) == 0) return 0;
   const std::uint64_t end = (block.begin + block.bytes + kPageBytes - 1) / kPageBytes * kPageBytes;
-  return address < end ? 1 : 0;
+  if (address >= end) return 0;
+  if (block.live != 0) return 1;
+  // The C library unmaps the pages of a large block when it is freed. What is mapped there now belongs to another: mmap(), a stack.
+  unsigned char resident = 0;
+  void* const page = reinterpret_cast<void*>(address / kPageBytes * kPageBytes);
+  return mincore(page, kPageBytes, &resident) == 0 ? 0 : 1;
 }
 
 std::uint64_t generation() { return heap().generation.load(std::memory_order_acquire); }

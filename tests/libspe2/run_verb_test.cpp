@@ -112,6 +112,36 @@ TEST(RunVerb, SeedsTellWhatDependsOnTheOrder) {
   EXPECT_TRUE(has(good, "with the same output")) << good.output;
 }
 
+TEST(RunVerb, SeedsHaveTheSameInput) {
+  const ScratchFolder folder;
+  const std::string file = folder / "input";
+  std::ofstream(file) << "7\n8\n";
+  std::ofstream(folder / "program") << "read word\n" << kPingPong << "\necho got $word\n";
+  std::ofstream(folder / "reads_all") << "cat\n" << kPingPong << "\n";
+  const std::string one =
+      std::string(SOFTCELL_COMMAND) + " run --seeds 3 --quiet -- sh " + (folder / "program");
+  const std::string all =
+      std::string(SOFTCELL_COMMAND) + " run --seeds 3 --quiet -- sh " + (folder / "reads_all");
+  for (const std::string& line :
+       {one + " < " + file, "cat " + file + " | " + one, "cat " + file + " | " + all, "yes 7 | " + one,
+        "(echo 7; sleep 2) | " + one, "head -c 300000 /dev/zero | " + all + " | tail -c 300"}) {
+    const CommandResult run = run_shell(line);
+    EXPECT_TRUE(has(run, "softcell: 3 seeds: sh ended with status 0 under each, with the same output"))
+        << line << ": " << run.output;
+    EXPECT_TRUE(line.find(one) == std::string::npos || has(run, "got 7\n")) << line << ": " << run.output;
+  }
+  for (const char* none : {" < /dev/null", " <&-"})
+    EXPECT_TRUE(has(run_shell(one + none), "softcell: 3 seeds: ")) << none;
+}
+
+TEST(RunVerb, SaysOfAProgramWithoutSpesThatTheirOrderIsNotTheReason) {
+  const CommandResult run = run_softcell("run --seeds 2 --quiet -- sh -c 'date +%N'");
+  EXPECT_EQ(run.status, 1) << run.output;
+  EXPECT_TRUE(has(run, "this is not the order of transfers or SPEs: no SPE context was made")) << run.output;
+  const CommandResult seeds = run_softcell("run --seeds 30 --quiet -- sh -c '" + kForgets + " 0'");
+  EXPECT_TRUE(has(seeds, " --turns -- sh -c '" + kForgets + " 0'\n")) << seeds.output;
+}
+
 TEST(RunVerb, HoldsTransfersAgainstTheBlocksOfTheHeap) {
   if (SC_ADDRESS_SANITIZER) GTEST_SKIP() << "the sanitizer finds it first, and has an allocator of its own";
   EXPECT_EQ(run_softcell("run -- " + kOverruns).status, 0) << "nobody knows of the block";
@@ -121,6 +151,9 @@ TEST(RunVerb, HoldsTransfersAgainstTheBlocksOfTheHeap) {
   EXPECT_TRUE(has(run, "40 of 64 bytes lie in 40 bytes at")) << run.output;
   EXPECT_TRUE(has(run, "allocated by make_block at overruns_a_block.c:")) << run.output;
   EXPECT_EQ(run_softcell("run --allocations -- " + kPingPong).status, 0);
+  const CommandResult mapped =
+      run_softcell("run --allocations -- " LIBSPE2_PROGRAMS "/libspe2_maps_a_freed_block");
+  EXPECT_EQ(mapped.status, 0) << "the pages are the program's again: " << mapped.output;
 }
 
 TEST(RunVerb, RecordsATrace) {

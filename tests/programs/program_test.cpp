@@ -28,7 +28,7 @@
 
 // clang-format off
 #define SC_PROGRAMS(X)                                                                  \
-  X(vectors) X(language) X(library) X(jumps) X(fails) X(maths) X(counts) X(files)       \
+  X(vectors) X(casts) X(language) X(library) X(jumps) X(fails) X(maths) X(counts) X(files) \
   X(calendar) X(text_numbers) X(characters) X(doubles) X(shared_words) X(prints) X(simd) \
   X(traps) X(statics) X(objects) X(destroys) X(no_parameters)
 // clang-format on
@@ -110,8 +110,9 @@ TEST_P(Programs, PassThemCheckedWithoutAFinding) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Each, Programs,
-                         testing::Values("vectors", "language", "library", "jumps", "calendar", "characters",
-                                         "doubles", "simd", "statics", "objects", "no_parameters"));
+                         testing::Values("vectors", "casts", "language", "library", "jumps", "calendar",
+                                         "characters", "doubles", "simd", "statics", "objects",
+                                         "no_parameters"));
 
 TEST(Program, PrintsOnThePpuSide) {
   EXPECT_EQ(run("library", program("library").plain).output, "0 failures of library.c\n");

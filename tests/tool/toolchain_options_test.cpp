@@ -85,6 +85,22 @@ TEST(ToolchainOptions, WithoutMeaningAreKeptForOneNote) {
   EXPECT_TRUE(options.compiler.empty());
 }
 
+TEST(ToolchainOptions, HaveTheStandardOfTheHeadersInPlaceOfAnOlderOne) {
+  EXPECT_EQ(parsed({"a.cc"}).cxx_standard, "-std=gnu++17");
+  EXPECT_EQ(parsed({"-std=c++98", "a.cc"}).cxx_standard, "-std=c++17");
+  EXPECT_EQ(parsed({"-std=gnu++98", "a.cc"}).cxx_standard, "-std=gnu++17");
+  EXPECT_EQ(parsed({"-std=gnu++20", "a.cc"}).compiler, Words{"-std=gnu++20"});
+  EXPECT_EQ(parsed({"-std=gnu90", "a.c"}).compiler, Words{"-std=gnu90"});
+  EXPECT_EQ(parsed({"-ansi", "a.cc"}, Language::kCxx).cxx_standard, "-std=c++17");
+}
+
+TEST(ToolchainOptions, ReachTheLinkerOneByOne) {
+  EXPECT_EQ(parsed({"-Xlinker", "-Map", "-Xlinker", "a.map", "a.o"}).linker, (Words{"-Map", "a.map"}));
+  EXPECT_EQ(parsed({"-Wl,-Map", "a.o", "-Wl,a.map"}).linker, (Words{"-Map", "a.map"}));
+  EXPECT_EQ(parsed({"-Xlinker", "-z", "-Xlinker", "stack-size=64", "a.o"}).stack_bytes, 64u);
+  EXPECT_EQ(refusal({"a.o", "-Xlinker", "-Map"}), "-Map needs a value");
+}
+
 TEST(ToolchainOptions, NameNoInputAsTheOutput) {
   const tests::ScratchFolder scratch;
   const std::string source = scratch.path().string() + "/a.c";
@@ -106,6 +122,8 @@ TEST(ToolchainOptions, TakeLibrariesWhereTheyStand) {
             "-lmissing: there is no libmissing.a in the folders of -L, and softcell's library has no part of "
             "that name");
   EXPECT_EQ(refusal({"-c", "a.c", "-lmissing"}), "") << "nothing is linked";
+  EXPECT_EQ(parsed({"a.o", "-L" + folder, "-l:libown.a"}).inputs[1].file, folder + "/libown.a");
+  EXPECT_EQ(refusal({"a.o", "-l:own.a"}), "-l:own.a: there is no file own.a in the folders of -L");
 }
 
 TEST(ToolchainOptions, ComeFromFilesToo) {

@@ -109,6 +109,41 @@ file(WRITE ${lab}/threads.cpp "int main() {\n  thread_local int a = 3;\n  return
 says(1 "threads.cpp:2:[0-9]+: error: one thread runs in a local store: leave out thread_local" ${BIN}/softcell-spu-g++ ${lab}/threads.cpp -o ${lab}/threads)
 says(1 "one thread runs in a local store: leave out thread_local" ${BIN}/softcell-spu-g++ -Uthread_local ${lab}/threads.cpp -o ${lab}/threads)
 
+# The names that an SPU's linker gives to the ends of code and data.
+file(WRITE ${lab}/ends.c "extern char __etext, _etext, etext, _edata, edata, __bss_start, _end, end;\n"
+  "const int constant = 7; int data = 5, zero[40];\n"
+  "#define RISE(a, b) ((char*)(a) <= (char*)(b))\n"
+  "int main(void) {\n"
+  "  int ok = &_etext == &etext && &_etext == &__etext && &_edata == &edata && &_end == &end;\n"
+  "  ok &= RISE(&main, &_etext) && RISE(&_etext, &constant) && RISE(&_etext, &data) && RISE(&data + 1, &_edata);\n"
+  "  return ok && RISE(&_edata, &__bss_start) && RISE(&__bss_start, zero) && RISE(zero + 40, &_end) ? 9 : 1;\n}\n")
+step("a program that asks where things end" ${gcc} ${lab}/ends.c -o ${lab}/ends)
+says(1 "ended with status 9" ${BIN}/softcell spu run ${lab}/ends)
+says(1 "ended with status 9" ${BIN}/softcell spu run --checked ${lab}/ends)
+file(WRITE ${lab}/own_end.c "int end = 4; static int edata(void) { return end + 1; } int main(void) { return edata(); }\n")
+step("names of the linker that a program has itself" ${gcc} ${lab}/own_end.c -o ${lab}/own_end)
+says(1 "ended with status 5" ${BIN}/softcell spu run ${lab}/own_end)
+
+# Files that are named relative to where the compiler ran.
+file(MAKE_DIRECTORY ${lab}/from ${lab}/headers)
+file(WRITE ${lab}/headers/covered.h "static inline int covered(volatile int* number) { return *number * 2; }\n")
+file(WRITE ${lab}/headers/also.h "static inline int also(volatile int* number) { return *number * 3; }\n")
+file(WRITE ${lab}/covered.c "#include <covered.h>\n#include \"headers/also.h\"\nvolatile int number = 1;\n"
+  "int main(void) { return covered(&number) + also(&number); }\n")
+step("a program of relative names" sh -c "cd ${lab}/from && ${gcc} -g -I../headers ../covered.c -o ../covered")
+says(1 "ended with status 5" ${BIN}/softcell spu run --coverage ${lab}/covered.info ${lab}/covered)
+says(0 "SF:${lab}/covered.c\n[^/]*SF:${lab}/headers/also.h\n[^/]*SF:${lab}/headers/covered.h\n" cat ${lab}/covered.info)
+
+# Vectors in headers of -isystem, which give no warnings.
+file(WRITE ${lab}/system/first.h "#include <spu_intrinsics.h>\nstatic int unused;\n#define FIRST(v) spu_extract((vec_uchar16)(v), 0)\n"
+  "static inline int first(vector unsigned int v) { return spu_extract((vec_uchar16)v, 0) + FIRST(v); }\n")
+file(WRITE ${lab}/uses_first.c "#include <first.h>\n"
+  "int main(void) { vec_uint4 v = {0x02030405}; return first(v) + FIRST(v); }\n")
+foreach(option "-isystem;${lab}/system" "-isystem${lab}/system")
+  says(0 "^$" ${gcc} -Wall ${option} ${lab}/uses_first.c -o ${lab}/uses_first)
+  says(1 "ended with status 6" ${BIN}/softcell spu run ${lab}/uses_first)
+endforeach()
+
 says(2 "usage: softcell-embedspu" ${BIN}/softcell-embedspu symbol)
 says(2 "is no name of a variable" ${BIN}/softcell-embedspu 1st ${lab}/whole ${lab}/e.o)
 says(2 "is no ELF file" ${BIN}/softcell-embedspu name ${lab}/Makefile ${lab}/e.o)

@@ -36,7 +36,7 @@ bool same_line(dma::EffectiveAddress a, dma::EffectiveAddress b) {
 
 }  // namespace
 
-void Checker::begin_run(const KernelImage& image, const StackRange& stack) {
+void Checker::begin_run(const KernelImage& image, const StackRange& stack, bool forgets) {
   SC_ASSERT(image.checked, "image {} is not a checked one", image.name);
   SC_ASSERT(stack.begin <= stack.end && stack.end <= dma::kLocalStoreBytes, "the stack of {} is {} to {}",
             image.name, stack.begin, stack.end);
@@ -44,7 +44,7 @@ void Checker::begin_run(const KernelImage& image, const StackRange& stack) {
   debug_information_ = &debug_information_of(image);
   objects_.emplace(image, stack);
   last_store_.reset();
-  written_.forget_the_last_program();
+  written_.forget_the_last_program(forgets ? 0 : stack.begin, forgets ? dma::kLocalStoreBytes : stack.end);
   if (runs_spu_program() || image.program) {
     written_.mark(image.begin, image.sizes.end - image.begin);  // bss is zero in each run
   } else {

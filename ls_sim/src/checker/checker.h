@@ -65,7 +65,8 @@ class Checker final : public ChannelPort, public AccessObserver {
   void on_unchecked_issue(const dma::MfcCommand& command);
 
   /// @param stack  the image's stack; for a job, the part of the resident kernel's stack that is free, too.
-  void begin_run(const KernelImage& image, const StackRange& stack);
+  /// @param forgets  what the last run wrote is nothing to this one; else only its stack is.
+  void begin_run(const KernelImage& image, const StackRange& stack, bool forgets = true);
 
   /// Call after a run that ended without a fault.
   void end_run();

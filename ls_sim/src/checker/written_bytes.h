@@ -18,9 +18,10 @@ class WrittenBytes {
   /// Marks all bytes as not written, including those from outside.
   void clear() { set_all(0); }
 
-  /// A new program begins: only what others wrote before its start counts as written.
-  void forget_the_last_program() {
-    for (auto& flags : flags_) flags.store(flags.load(kRelaxed) & kFromOutside, kRelaxed);
+  /// A new program begins: of these bytes, only what others wrote before its start counts as written.
+  void forget_the_last_program(std::uint32_t begin, std::uint32_t end) {
+    for (std::uint32_t lsa = begin; lsa < end; ++lsa)
+      flags_[lsa].store(flags_[lsa].load(kRelaxed) & kFromOutside, kRelaxed);
   }
 
   void mark(std::uint32_t lsa, std::uint32_t bytes) { add(lsa, bytes, kByProgram); }

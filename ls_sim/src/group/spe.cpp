@@ -163,7 +163,8 @@ RunResult Spe::run_engine(const Run& run) {
   }
   SC_ASSERT(run.image->sizes.stack <= run.image->stack_top, "{} has a stack of {} bytes below {}",
             run.image->name, run.image->sizes.stack, run.image->stack_top);
-  checker_->begin_run(*run.image, {run.image->stack_top - run.image->sizes.stack, run.image->stack_top});
+  checker_->begin_run(*run.image, {run.image->stack_top - run.image->sizes.stack, run.image->stack_top},
+                      run.arguments.data_as_linked);
   RunResult result = run_timed(run, *checker_, checker_.get(), nullptr);
   if (!result.fault) checker_->end_run();
   return result;

@@ -203,8 +203,10 @@ class Context final : public SpeContext, private StopListener {
     const auto now = std::chrono::steady_clock::now();
     SC_ASSERT(phase_ == Phase::kIdle && !given_ && !resumed_ && !abandoned_,
               "context {} begins a run in phase {}", number_->value, phase_);
+    EntryArguments given = arguments;
+    given.data_as_linked = false;
     given_ = Run{.image = image_.get(),
-                 .arguments = arguments,
+                 .arguments = given,
                  .number = serial_ << 20 | runs_++,
                  .begin = now,
                  .resident = false};

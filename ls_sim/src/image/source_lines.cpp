@@ -5,6 +5,7 @@
 #include <libelf.h>
 
 #include <cstdlib>
+#include <filesystem>
 #include <string_view>
 #include <unordered_map>
 #include <utility>
@@ -72,6 +73,14 @@ SourcePlace line_of(Dwarf_Die* unit, Dwarf_Addr address) {
   return result;
 }
 
+/// A name relative to the folder in which the compiler ran, as of a header by -I../include, becomes an absolute one.
+std::string absolute_name(Dwarf_Die* unit, const std::string& file) {
+  Dwarf_Attribute attribute;
+  const char* const folder = dwarf_formstring(dwarf_attr(unit, DW_AT_comp_dir, &attribute));
+  if (folder == nullptr || file.empty() || file.front() == '/') return file;
+  return (std::filesystem::path(folder) / file).lexically_normal().string();
+}
+
 std::string to_place(const SourcePlace& source) {
   if (source.file.empty()) return {};
   return source.file.substr(source.file.rfind('/') + 1) + ":" + std::to_string(source.line);
@@ -103,7 +112,9 @@ struct SourceLines::Reader {
       if (!is_foreign(source.file)) break;
       if (dwarf_tag(&scope) == DW_TAG_inlined_subroutine) source = call_site(&unit, &scope);
     }
-    return source.file.empty() ? innermost : source;
+    if (source.file.empty()) source = innermost;
+    source.file = absolute_name(&unit, source.file);
+    return source;
   }
 
   std::shared_ptr<const std::vector<std::byte>> file;

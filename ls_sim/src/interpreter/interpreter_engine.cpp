@@ -173,7 +173,7 @@ RunResult InterpreterEngine::run(const EntryArguments& arguments, ChannelPort& c
                                  AccessObserver* accesses, JobObserver* jobs) {
   SC_ASSERT(image_ != nullptr, "run({}) before load()", arguments.spe_id);
   // As with the native engine, a run finds what was linked, and in bss what the last run left.
-  if (!std::exchange(as_loaded_, false)) copy_program();
+  if (!std::exchange(as_loaded_, false) && arguments.data_as_linked) copy_program();
   set_entry_state(arguments);
   stop_wanted_.store(false, std::memory_order_relaxed);
   trail_.start(state_.pc);

@@ -209,7 +209,7 @@ void NativeEngine::prepare(const EntryArguments& arguments) {
   SC_ASSERT(image_ != nullptr, "run({}) before load()", arguments.spe_id);
   // The initialised data start every run as they were linked, so that no job sees what another left. Right
   // after load() they are so already, and others may have written to them since.
-  if (!std::exchange(data_as_linked_, false)) {
+  if (!std::exchange(data_as_linked_, false) && arguments.data_as_linked) {
     const std::uint32_t data_offset = image_->data_begin - image_->begin;
     dma::copy_to_local_store(local_store_.base() + image_->data_begin, linked_.data() + data_offset,
                              image_->data_end - image_->data_begin);

@@ -20,11 +20,16 @@ SOFTCELL_PPU_INLINE void __isync(void) { __sync_synchronize(); }
 /* ---- time: the time base of a PlayStation 3 has 79.8 million ticks a second */
 
 #define SOFTCELL_PPU_TIMEBASE 79800000ull
+/* The C library's monotonic clock by names of ours, as <time.h> hides it from a program of strict C. */
+struct softcell_ppu_time {
+  long seconds, nanoseconds;
+};
+extern int softcell_ppu_clock(int clock, struct softcell_ppu_time* now) __asm__("clock_gettime");
 SOFTCELL_PPU_INLINE uint64_t __mftb(void) {
-  struct timespec now;
-  clock_gettime(CLOCK_MONOTONIC, &now);
-  return (uint64_t)now.tv_sec * SOFTCELL_PPU_TIMEBASE +
-         (uint64_t)now.tv_nsec * (SOFTCELL_PPU_TIMEBASE / 100000) / 10000;
+  struct softcell_ppu_time now;
+  softcell_ppu_clock(1, &now);
+  return (uint64_t)now.seconds * SOFTCELL_PPU_TIMEBASE +
+         (uint64_t)now.nanoseconds * (SOFTCELL_PPU_TIMEBASE / 100000) / 10000;
 }
 
 /* ---- the cache, whose lines have 128 bytes. Its contents are always those of memory */

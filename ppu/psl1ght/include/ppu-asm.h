@@ -4,7 +4,7 @@
 
 #include <ppu-types.h>
 
-static inline u32 __read32(u64 address) { return *(vu32*)(uintptr_t)address; }
-static inline void __write32(u64 address, u32 value) { *(vu32*)(uintptr_t)address = value; }
+static __inline__ u32 __read32(u64 address) { return *(vu32*)(uintptr_t)address; }
+static __inline__ void __write32(u64 address, u32 value) { *(vu32*)(uintptr_t)address = value; }
 
 #endif

@@ -58,7 +58,8 @@ SC_C_8_16_32(SC_C_COMPARED, )
   SC_C_INLINE V softcell_c_splats_##V(S s_) {                                    \
     S lanes[16 / sizeof(S)];                                                     \
     V v_;                                                                        \
-    for (unsigned int i_ = 0; i_ < 16 / sizeof(S); ++i_) lanes[i_] = s_;         \
+    unsigned int i_;                                                             \
+    for (i_ = 0; i_ < 16 / sizeof(S); ++i_) lanes[i_] = s_;                      \
     __builtin_memcpy(&v_, lanes, 16);                                            \
     return v_;                                                                   \
   }                                                                              \
@@ -243,7 +244,7 @@ SC_C_SPLAT(vec_double2, double)
     __auto_type sc_1 = (s);                      \
     SC_C_PICK(SC_C_SCALARS, splats, sc_1)(sc_1); \
   })
-#define spu_promote(s, element) ((void)(element), spu_splats(s))
+#define spu_promote(s, element) (((void)(element), spu_splats(s)))
 #define spu_insert(s, a, element)                                   \
   __extension__({                                                   \
     __auto_type sc_1 = (s);                                         \
@@ -388,7 +389,8 @@ SC_C_INLINE void softcell_halt_if(int condition) {
 
 /* What compiles on an SPU and has no meaning here is refused where it is used, with the reason. */
 __attribute__((error(
-    "FPSCR is not modelled on the host: doubles round to nearest, and there are no sticky flags"))) vec_uint4
+    "FPSCR is not modelled on the host: spu_* of doubles round to nearest, and there are no sticky flags")))
+vec_uint4
 softcell_no_fpscr(void);
 __attribute__((error("special purpose registers are not modelled on the host"))) unsigned int
 softcell_no_special_register(void);

@@ -9,7 +9,7 @@
 
 #include <stdint.h>
 
-#define SC_C_INLINE static inline __attribute__((always_inline, unused))
+#define SC_C_INLINE static __inline__ __attribute__((always_inline, unused))
 
 typedef unsigned char vec_uchar16 __attribute__((vector_size(16), may_alias));
 typedef signed char vec_char16 __attribute__((vector_size(16), may_alias));

@@ -1,22 +1,27 @@
 // softcell_vector_casts: reads the preprocessed source of a C kernel and writes it with SPU vectors as the host's C compiler needs them.
 //
-//   softcell_vector_casts name.i name.softcell.i
+//   softcell_vector_casts name.i name.softcell.i [FOLDER...]
 //
 // - A cast between vector types, `(vec_uchar16)x`, reinterprets a register's sixteen bytes. The compiler's own cast would show the
 //   host's byte order in each lane, so that the cast becomes a call of softcell_regroup() (softcell_c_types.h).
 // - `(vec_uint4)(1, 2, 3, 4)`, the old spelling of a literal, becomes one with braces.
 // - `vector` before a type's name becomes the attribute. Elsewhere it stays what it is: a name.
 //
+// The compiler takes headers in the folders for those of a system, of which it says no warnings.
+//
 // Lines stay where they are, so that the compiler's messages and the debugger name those of the source. C++ needs none of this: its
 // vectors are classes.
 
+#include <algorithm>
 #include <cctype>
 #include <fstream>
 #include <iostream>
 #include <iterator>
+#include <map>
 #include <set>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace {
@@ -76,16 +81,40 @@ std::vector<Token> tokens_of(std::string_view s) {
   return tokens;
 }
 
-const std::set<std::string, std::less<>> kScalarWords = {"unsigned", "signed", "char",   "short", "int",
-                                                         "long",     "float",  "double", "bool"};
-const std::set<std::string, std::less<>> kQualifiers = {"const", "volatile", "__const", "__volatile__",
-                                                        "register"};
+using Names = std::set<std::string, std::less<>>;
+
+const Names kScalarWords = {"unsigned", "signed", "__signed__", "char",  "short",   "int",
+                            "long",     "float",  "double",     "_Bool", "__int128"};
+const Names kQualifiers = {"const",      "volatile", "restrict",  "__const",    "__volatile__",
+                           "__restrict", "register", "__const__", "__volatile", "__restrict__"};
 /// Words behind which an expression begins.
-const std::set<std::string, std::less<>> kBeforeExpression = {"return", "else", "do", "case"};
+const Names kBeforeExpression = {"return", "else", "do", "case"};
+
+/// What a type's name says.
+struct Type {
+  std::string text;          ///< as the host's compiler is to read it
+  bool is_vector = false;    ///< of sixteen bytes
+  bool is_of_value = false;  ///< __typeof__(value): only the compiler knows
+  std::size_t lanes = 0;     ///< of a vector of such lanes; 0 if that is not known
+};
+
+/// The vectors that an SPU has, and the bytes of their lanes.
+constexpr std::pair<std::string_view, int> kVectors[] = {
+    {"unsigned char", 1},      {"signed char", 1}, {"char", 1},  {"unsigned short", 2}, {"short", 2},
+    {"unsigned int", 4},       {"int", 4},         {"float", 4}, {"unsigned long", 4},  {"long", 4},
+    {"unsigned long long", 8}, {"long long", 8},   {"double", 8}};
+
+/// The lanes of a vector of a scalar, from the scalar's words.
+std::size_t lanes_of(const std::multiset<std::string>& words) {
+  if (words.count("char") != 0 || words.count("_Bool") != 0) return 16;
+  if (words.count("short") != 0) return 8;
+  return words.count("double") != 0 || words.count("long") == 2 ? 2 : 4;
+}
 
 class Rewriter {
  public:
-  explicit Rewriter(std::vector<Token> tokens) : tokens_(std::move(tokens)) {}
+  Rewriter(std::vector<Token> tokens, std::vector<std::string> system_folders)
+      : tokens_(std::move(tokens)), system_folders_(std::move(system_folders)) {}
 
   std::string run() {
     while (at_ < tokens_.size()) step();
@@ -108,22 +137,29 @@ class Rewriter {
     const Token& t = tokens_[at_++];
     out_ += t.text;
     // # <line> "<file>" <flags>: the flag 3 is that of headers which are not the user's.
-    if (t.kind == Token::kLine && t.text.find('"') != std::string::npos)
+    if (t.kind == Token::kLine && t.text.find('"') != std::string::npos) {
       foreign_ = t.text.find(" 3", t.text.rfind('"')) != std::string::npos;
+      if (!foreign_ && is_in_system_folder(t.text)) out_ += " 3";
+    }
     if (is_blank(t)) return;
     if (t.text == "{") {
-      // Behind a parameter list a function's body begins; all else at this level is a declaration or an initialiser.
-      if (depth_++ == 0) in_function_ = last_ == ")";
+      // A function's body begins behind a parameter list, or behind the declarations of K&R's parameters; all else at this level is a
+      // declaration or an initialiser.
+      if (depth_++ == 0) in_function_ = last_ == ")" || last_ == ";";
     } else if (t.text == "}") {
       if (--depth_ == 0) in_function_ = false;
     } else if (t.text == "typedef") {
-      typedef_ = true;
-    } else if (t.text == ";" && typedef_ && depth_ == typedef_depth_) {
-      typedef_ = false;
+      note_types(at_);
     }
-    if (t.text == "typedef") typedef_depth_ = depth_;
     last_ = t.text;
     last_kind_ = t.kind;
+  }
+
+  bool is_in_system_folder(std::string_view marker) const {
+    const std::string_view file = marker.substr(marker.find('"') + 1);
+    return std::any_of(system_folders_.begin(), system_folders_.end(), [&](const std::string& folder) {
+      return file.substr(0, folder.size() + 1) == folder + "/";
+    });
   }
 
   void step() {
@@ -135,21 +171,11 @@ class Rewriter {
       ++at_;
       return;
     }
-    if (t.kind == Token::kWord && typedef_ && vectors_.count(last_) != 0 && is(skip_blanks(at_ + 1), ";")) {
-      vectors_.insert(t.text);  // typedef vec_float4 point;
-    }
     if (t.text == "(" && may_begin_a_cast()) {
-      std::string type;
-      if (const std::size_t behind = vector_type_in_parentheses(at_, type); behind != 0) {
-        const std::size_t operand = skip_blanks(behind);
-        if (is(operand, "(") && has_comma(operand)) {
-          literal(type, behind);
-          return;
-        }
-        if (in_function_ && begins_operand(operand)) {
-          cast(type, behind);
-          return;
-        }
+      Type type;
+      if (const std::size_t behind = vector_in_parentheses(at_, type); behind != 0) {
+        if (is_literal(type, skip_blanks(behind))) return literal(type, behind);
+        if (in_function_ && may_be_vector(type, skip_blanks(behind))) return cast(type, behind);
       }
     }
     copy();
@@ -165,46 +191,126 @@ class Rewriter {
     return last_kind_ != Token::kNumber && last_ != "]" && last_ != ")";
   }
 
-  /// `( [qualifiers] vector type [qualifiers] )`. @return  the token behind it, or 0.
-  std::size_t vector_type_in_parentheses(std::size_t at, std::string& type) const {
-    bool found = false;
-    type.clear();
-    for (at = skip_blanks(at + 1); at < tokens_.size(); at = skip_blanks(at + 1)) {
-      const std::string& word = tokens_[at].text;
-      if (word == ")") return found ? at + 1 : 0;
-      if (kQualifiers.count(word) != 0) continue;
-      if (found) {
-        if (!spelt_out_ || kScalarWords.count(word) == 0) return 0;
-        type += " " + word;
-      } else if (vectors_.count(word) != 0) {
-        type = word;
-        found = true;
-        spelt_out_ = false;
-      } else if ((word == "vector" || word == "__vector" || word == "__vector__") &&
-                 names_scalar(skip_blanks(at + 1))) {
-        type = "__attribute__((vector_size(16)))";
-        found = true;
-        spelt_out_ = true;
-      } else if (word == "__attribute__" && is_vector_attribute(at)) {
-        type = "__attribute__((vector_size(16)))";
-        found = true;
-        spelt_out_ = true;
-        at = behind_parentheses(skip_blanks(at + 1)) - 1;
-      } else {
-        return 0;
-      }
-    }
-    return 0;
-  }
+  bool is_attribute(std::size_t at) const { return is(at, "__attribute__") || is(at, "__attribute"); }
 
-  /// What __vector has become by preprocessing.
+  /// What __vector has become by preprocessing, alone or with other attributes.
   bool is_vector_attribute(std::size_t at) const {
     std::string text;
-    const std::size_t begin = skip_blanks(at + 1);
-    if (!is(begin, "(")) return false;
-    for (std::size_t i = begin; i < behind_parentheses(begin); ++i)
-      if (!is_blank(tokens_[i])) text += tokens_[i].text;
-    return text == "((vector_size(16)))" || text == "((__vector_size__(16)))";
+    for (const std::size_t end = behind_parentheses(skip_blanks(at + 1)); at < end; ++at)
+      if (!is_blank(tokens_[at])) text += tokens_[at].text;
+    return text.find("vector_size(16)") != std::string::npos ||
+           text.find("vector_size__(16)") != std::string::npos;
+  }
+
+  /// Reads qualifiers, attributes and the names of a scalar or a vector. @return  the token behind them.
+  std::size_t specifiers(std::size_t at, Type& type) const {
+    std::multiset<std::string> scalar;
+    bool has_name = false;
+    const auto add = [&type](const std::string& text) { type.text += (type.text.empty() ? "" : " ") + text; };
+    for (at = skip_blanks(at); at < tokens_.size(); at = skip_blanks(at + 1)) {
+      const std::string& word = tokens_[at].text;
+      if (kQualifiers.count(word) != 0) continue;
+      if (is_attribute(at)) {
+        if (is_vector_attribute(at)) {
+          type.is_vector = true;
+          add("__attribute__((vector_size(16)))");
+        }
+        at = behind_parentheses(skip_blanks(at + 1)) - 1;
+      } else if (word == "vector" && names_scalar(skip_blanks(at + 1))) {
+        type.is_vector = true;
+        add("__attribute__((vector_size(16)))");
+      } else if (has_name) {
+        break;
+      } else if (kScalarWords.count(word) != 0) {
+        scalar.insert(word);
+        add(word);
+      } else if (!scalar.empty()) {
+        break;
+      } else if (const auto known = types_.find(word); known != types_.end()) {
+        has_name = true;
+        type.is_vector |= known->second.is_vector;
+        type.is_of_value = known->second.is_of_value;
+        type.lanes = known->second.lanes;
+        add(word);
+      } else if (word == "typeof" || word == "__typeof__" || word == "__typeof") {
+        has_name = type.is_of_value = true;
+        const std::size_t end = behind_parentheses(skip_blanks(at + 1));
+        for (; at < end; ++at) type.text += is_blank(tokens_[at]) ? " " : tokens_[at].text;
+        --at;
+      } else {
+        break;
+      }
+    }
+    if (!scalar.empty()) type.lanes = lanes_of(scalar);
+    return at;
+  }
+
+  /// `(vector type)`, or what may be one. @return  the token behind it, or 0.
+  std::size_t vector_in_parentheses(std::size_t at, Type& type) const {
+    at = specifiers(at + 1, type);
+    return is(at, ")") && (type.is_vector || type.is_of_value) ? at + 1 : 0;
+  }
+
+  /// Whether these are the parentheses of a cast or a compound literal, and no expression's.
+  bool holds_type(std::size_t at) const {
+    const std::string& word = tokens_[std::min(skip_blanks(at + 1), tokens_.size() - 1)].text;
+    if (word == "struct" || word == "union" || word == "enum" || word == "void" ||
+        kQualifiers.count(word) != 0)
+      return true;
+    Type type;
+    return specifiers(at + 1, type) != skip_blanks(at + 1);
+  }
+
+  /// Notes the names that a typedef declares.
+  void note_types(std::size_t at) {
+    Type type;
+    at = specifiers(at + 1, type);
+    if (is(at, "struct") || is(at, "union") || is(at, "enum")) {
+      while (at < tokens_.size() && !is(at, "{") && !is(at, ";") && !is(at, "*")) {
+        const std::size_t next = skip_blanks(at + 1);
+        if (is_attribute(at)) {
+          at = behind_parentheses(next);
+        } else if (next < tokens_.size() && tokens_[next].kind != Token::kWord && !is(next, "{")) {
+          break;  // at the name that is declared
+        } else {
+          at = next;
+        }
+      }
+      if (is(at, "{")) at = skip_blanks(behind_parentheses(at));
+    } else if (is(at, "void") || (type.text.empty() && at < tokens_.size())) {
+      ++at;  // void, or a type that the compiler knows by itself
+    }
+    while (at < tokens_.size() && !is(at, "}")) {
+      at = note_declarator(at, type);
+      if (is(at, ";")) return;
+      ++at;
+    }
+  }
+
+  /// One of them: the name itself is of the type, *name and name[4] are of another. @return  the token behind it.
+  std::size_t note_declarator(std::size_t at, Type type) {
+    std::string name;
+    for (at = skip_blanks(at); at < tokens_.size(); at = skip_blanks(at + 1)) {
+      const Token& t = tokens_[at];
+      if (t.text == "," || t.text == ";" || t.text == "}") break;
+      if (is_attribute(at)) {
+        type.is_vector |= is_vector_attribute(at);
+        at = behind_parentheses(skip_blanks(at + 1)) - 1;
+      } else if (t.text == "(" || t.text == "[") {
+        const std::size_t end = behind_parentheses(at);
+        for (; name.empty() && at < end; ++at)
+          if (tokens_[at].kind == Token::kWord && kQualifiers.count(tokens_[at].text) == 0)
+            name = tokens_[at].text;  // (*name)(...)
+        at = end - 1;
+        type = {};
+      } else if (t.text == "*") {
+        type = {};
+      } else if (t.kind == Token::kWord && kQualifiers.count(t.text) == 0) {
+        name = t.text;
+      }
+    }
+    if (!name.empty()) types_[name] = type;
+    return at;
   }
 
   std::size_t behind_parentheses(std::size_t at) const {
@@ -217,16 +323,30 @@ class Rewriter {
     return tokens_.size();
   }
 
-  /// Whether the parentheses that begin here hold a comma of their own.
-  bool has_comma(std::size_t at) const {
+  /// How many commas of their own the parentheses that begin here hold.
+  std::size_t commas(std::size_t at) const {
+    std::size_t found = 0;
     int depth = 0;
     for (const std::size_t end = behind_parentheses(at); at < end; ++at) {
       const std::string& text = tokens_[at].text;
       if (text == "(" || text == "[" || text == "{") ++depth;
       if (text == ")" || text == "]" || text == "}") --depth;
-      if (text == "," && depth == 1) return true;
+      if (text == "," && depth == 1) ++found;
     }
-    return false;
+    return found;
+  }
+
+  /// (type)(1, 2, 3, 4). With another number of values than lanes it is a cast of the last one, as a comma has it.
+  bool is_literal(const Type& type, std::size_t operand) const {
+    if (!type.is_vector || !is(operand, "(")) return false;
+    const std::size_t found = commas(operand);
+    return found != 0 && (type.lanes == 0 || found + 1 == type.lanes);
+  }
+
+  /// Whether a vector may be what is cast.
+  bool may_be_vector(const Type& type, std::size_t operand) const {
+    if (!begins_operand(operand)) return false;
+    return type.is_vector || tokens_[operand].kind == Token::kWord || tokens_[operand].kind == Token::kSign;
   }
 
   bool begins_operand(std::size_t at) const {
@@ -243,9 +363,9 @@ class Rewriter {
     while (at_ < end) step();
   }
 
-  void literal(const std::string& type, std::size_t behind) {
+  void literal(const Type& type, std::size_t behind) {
     const std::size_t open = skip_blanks(behind), close = behind_parentheses(open) - 1;
-    out_ += "(" + type + ")";
+    out_ += "(" + type.text + ")";
     blanks(at_, open);
     out_ += "{";
     at_ = open + 1;
@@ -258,18 +378,41 @@ class Rewriter {
     at_ = close + 1;
   }
 
-  void cast(const std::string& type, std::size_t behind) {
+  void cast(const Type& type, std::size_t behind) {
     out_ += "__extension__({ __auto_type softcell_v = (";
+    if (type.is_of_value) out_ += "(void)0, ";  // a bit-field alone gives no type
     blanks(at_, behind);
     at_ = behind;
     last_ = "(";
     last_kind_ = Token::kSign;
     operand();
-    out_ += "); (" + type +
-            ")softcell_regroup((vec_uchar16)softcell_v, (sizeof softcell_v[0] - 1) ^ (sizeof((" + type +
-            "){0})[0] - 1)); })";
+    if (type.is_vector) {
+      out_ += "); (" + type.text +
+              ")softcell_regroup((vec_uchar16)softcell_v, (sizeof softcell_v[0] - 1) ^ (sizeof((" +
+              type.text + "){0})[0] - 1)); })";
+    } else {
+      out_ += "); (" + type.text + ")__builtin_choose_expr(" + lane_bytes("*(" + type.text + "*)0") +
+              " == 0, softcell_v, softcell_regroup((vec_uchar16)" + vector_or_zero("softcell_v") + ", (" +
+              lane_bytes("softcell_v") + " - 1) ^ (" + lane_bytes("*(" + type.text + "*)0") + " - 1))); })";
+    }
     last_ = ")";
     last_kind_ = Token::kSign;
+  }
+
+  /// Of a vector, else 0.
+  static std::string lane_bytes(const std::string& value) {
+    return vectors_of(value, [](int bytes) { return std::to_string(bytes); }) + "default: 0)";
+  }
+  /// Of anything a vector.
+  static std::string vector_or_zero(const std::string& value) {
+    return vectors_of(value, [&](int) { return value; }) + "default: (vec_uchar16){0})";
+  }
+  template <class Choice>
+  static std::string vectors_of(const std::string& value, const Choice& choice) {
+    std::string text = "_Generic(" + value + ", ";
+    for (const auto& [words, bytes] : kVectors)
+      text += "__attribute__((vector_size(16))) " + std::string(words) + ": " + choice(bytes) + ", ";
+    return text;
   }
 
   /// The blanks among tokens that are written anew, so that lines stay where they are.
@@ -292,26 +435,20 @@ class Rewriter {
       break;
     }
     if (is(at_, "(")) {
-      std::string type;
-      const std::size_t behind = vector_type_in_parentheses(at_, type);
-      if (behind != 0 && begins_operand(skip_blanks(behind)) &&
-          !(is(skip_blanks(behind), "(") && has_comma(skip_blanks(behind)))) {
-        cast(type, behind);
-        return;
-      }
-      const std::size_t end = behind_parentheses(at_);
-      const std::size_t next = skip_blanks(end);
-      if (behind != 0 && is(next, "(")) {
+      Type type;
+      const std::size_t behind = vector_in_parentheses(at_, type);
+      const std::size_t end = behind_parentheses(at_), next = skip_blanks(end);
+      if (behind != 0 && is_literal(type, next)) {
         literal(type, behind);
+      } else if (behind != 0 && may_be_vector(type, next)) {
+        return cast(type, behind);
+      } else if (holds_type(at_)) {
+        rewrite_to(end);
+        if (!is(next, "{")) return operand();  // a cast to a scalar or a pointer
+        rewrite_to(behind_parentheses(next));
       } else {
         copy();
         rewrite_to(end);
-        if (next < tokens_.size() &&
-            (tokens_[next].kind == Token::kWord || tokens_[next].kind == Token::kNumber || is(next, "{"))) {
-          if (!is(next, "{")) return operand();  // a cast to a scalar or a pointer
-          const std::size_t end_of_literal = behind_parentheses(next);
-          rewrite_to(end_of_literal);
-        }
       }
     } else {
       copy();
@@ -338,23 +475,21 @@ class Rewriter {
   }
 
   std::vector<Token> tokens_;
-  std::set<std::string, std::less<>> vectors_ = {"vec_uchar16", "vec_char16",  "vec_ushort8", "vec_short8",
-                                                 "vec_uint4",   "vec_int4",    "vec_ullong2", "vec_llong2",
-                                                 "vec_float4",  "vec_double2", "qword"};
+  std::vector<std::string> system_folders_;
+  std::map<std::string, Type, std::less<>> types_;
   std::size_t at_ = 0;
   std::string out_;
   std::string last_;
   Token::Kind last_kind_ = Token::kSign;
-  int depth_ = 0, typedef_depth_ = 0;
-  bool in_function_ = false, typedef_ = false, foreign_ = false;
-  mutable bool spelt_out_ = false;
+  int depth_ = 0;
+  bool in_function_ = false, foreign_ = false;
 };
 
 }  // namespace
 
 int main(int count, char** arguments) {
-  if (count != 3) {
-    std::cerr << "usage: softcell_vector_casts PREPROCESSED OUTPUT\n";
+  if (count < 3) {
+    std::cerr << "usage: softcell_vector_casts PREPROCESSED OUTPUT [FOLDER...]\n";
     return 2;
   }
   std::ifstream in(arguments[1], std::ios::binary);
@@ -364,7 +499,7 @@ int main(int count, char** arguments) {
     return 1;
   }
   std::ofstream out(arguments[2], std::ios::binary);
-  out << Rewriter(tokens_of(source)).run();
+  out << Rewriter(tokens_of(source), {arguments + 3, arguments + count}).run();
   if (!out.flush()) {
     std::cerr << "softcell_vector_casts: " << arguments[2] << " cannot be written\n";
     return 1;

@@ -68,8 +68,9 @@ inline constexpr bool kNever = false;
 
 template <class T_ = void>
 SC_SDK_INLINE vec_uint4 no_fpscr() {
-  static_assert(kNever<T_>,
-                "FPSCR is not modelled on the host: doubles round to nearest, and there are no sticky flags");
+  static_assert(
+      kNever<T_>,
+      "FPSCR is not modelled on the host: spu_* of doubles round to nearest, and there are no sticky flags");
   return {};
 }
 template <class T_ = void>

@@ -1,5 +1,6 @@
 // Memory: bytes, and the heap between bss and the declared stack.
 
+#include <errno.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
@@ -125,6 +126,15 @@ void* memalign(size_t alignment, size_t bytes) {
   return nullptr;
 }
 
+void* aligned_alloc(size_t alignment, size_t bytes) { return memalign(alignment, bytes); }
+
+int posix_memalign(void** memory, size_t alignment, size_t bytes) {
+  void* const block = memalign(alignment, bytes);
+  if (block == nullptr) return ENOMEM;
+  *memory = block;
+  return 0;
+}
+
 void* malloc(size_t bytes) { return memalign(16, bytes); }
 
 void free(void* memory) {
@@ -140,6 +150,18 @@ void* calloc(size_t count, size_t bytes) {
   return memory == nullptr ? nullptr : memset(memory, 0, static_cast<size_t>(all));
 }
 
+/// Moves the first bytes of a block to another one, if there is one, and frees the old one.
+static void* moved(void* old, void* fresh, size_t bytes) {
+  if (fresh == nullptr) return nullptr;
+  // The program need not have written any of the bytes, but it is no mistake to copy them with their head, which is written.
+  Block* const block = static_cast<Block*>(fresh) - 1;
+  const Block head = *block;
+  memcpy(block, static_cast<Block*>(old) - 1, sizeof(Block) + bytes);
+  *block = head;
+  free(old);
+  return fresh;
+}
+
 void* realloc(void* old, size_t bytes) {
   if (old == nullptr) return malloc(bytes);
   if (bytes == 0) {
@@ -148,15 +170,15 @@ void* realloc(void* old, size_t bytes) {
   }
   const size_t had = (static_cast<Block*>(old) - 1)->bytes;
   if (bytes <= had) return old;
-  void* const fresh = malloc(bytes);
-  if (fresh == nullptr) return nullptr;
-  // The program need not have written any of the bytes, but it is no mistake to copy them with their head, which is written.
-  Block* const block = static_cast<Block*>(fresh) - 1;
-  const Block head = *block;
-  memcpy(block, static_cast<Block*>(old) - 1, sizeof(Block) + had);
-  *block = head;
-  free(old);
-  return fresh;
+  return moved(old, malloc(bytes), had);
+}
+
+void* realloc_align(void* old, size_t bytes, unsigned int log2_align) {
+  const size_t alignment = size_t{1} << log2_align;
+  if (old == nullptr) return memalign(alignment, bytes);
+  const size_t had = (static_cast<Block*>(old) - 1)->bytes;
+  if (bytes <= had && (reinterpret_cast<uintptr_t>(old) & (alignment - 1)) == 0) return old;
+  return moved(old, memalign(alignment, bytes), had < bytes ? had : bytes);
 }
 
 }  // extern "C"

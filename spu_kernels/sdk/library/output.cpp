@@ -23,6 +23,9 @@ int snprintf(char* to, size_t bytes, const char* format, ...) {
 }
 int sprintf(char* to, const char* format, ...) { SC_VARIADIC(format, vsprintf(to, format, list)); }
 
+void setbuf(FILE*, char*) {}
+int setvbuf(FILE*, char*, int, size_t) { return 0; }
+
 int puts(const char* text) { return call(kPuts, text); }
 int putchar(int c) { return call(kPutchar, c); }
 int fputs(const char* text, FILE* file) { return call(kFputs, text, file); }

@@ -69,6 +69,7 @@ void exit(int status) {
     at_exit = last->before;
     last->function(last->object);
   }
+  at_exit_count = 0;  // an SPE context may run the program again
   for (Function* const* next = softcell_destructors_end; next != softcell_destructors;) (*--next)();
   _exit(status);
 }
@@ -77,6 +78,8 @@ void _exit(int status) {
   softcell_sdk::call_gate(softcell_sdk::kStop, 0, 0x2000u | (static_cast<unsigned int>(status) & 0xFFu));
   __builtin_trap();  // a run that has ended is not resumed
 }
+
+char* getenv(const char*) { return nullptr; }
 
 void abort() {
   fputs("abort() was called\n", stderr);

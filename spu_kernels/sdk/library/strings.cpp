@@ -108,6 +108,29 @@ char* strdup(const char* s) {
   return copy == nullptr ? nullptr : static_cast<char*>(memcpy(copy, s, bytes));
 }
 
+char* strndup(const char* s, size_t most) {
+  const size_t bytes = strnlen(s, most);
+  auto* const copy = static_cast<char*>(malloc(bytes + 1));
+  if (copy == nullptr) return nullptr;
+  memcpy(copy, s, bytes);
+  copy[bytes] = '\0';
+  return copy;
+}
+
+char* stpcpy(char* to, const char* from) { return strcpy(to, from) + strlen(from); }
+
+char* strsep(char** rest, const char* separators) {
+  char* const token = *rest;
+  if (token == nullptr) return nullptr;
+  char* const end = token + strcspn(token, separators);
+  *rest = *end == '\0' ? nullptr : end + 1;
+  *end = '\0';
+  return token;
+}
+
+void bzero(void* to, size_t bytes) { memset(to, 0, bytes); }
+void bcopy(const void* from, void* to, size_t bytes) { memmove(to, from, bytes); }
+
 char* strerror(int error) {
   static const struct {
     int number;

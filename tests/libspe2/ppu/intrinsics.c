@@ -34,9 +34,16 @@ static void reservations(void) {
 
 static void memory(void) {
   static unsigned char lines[384] __attribute__((aligned(128)));
-  char* const block = (char*)malloc_align(1000, 7);
+  char* block = (char*)malloc_align(1000, 7);
   CHECK(block != NULL && (uintptr_t)block % 128 == 0);
   free_align(block);
+  block = (char*)calloc_align(10, 100, 7);
+  CHECK(block != NULL && ((uintptr_t)block & 127) == 0 && block[0] == 0 && block[999] == 0);
+  block[999] = 5;
+  block = (char*)realloc_align(block, 100000, 12);
+  CHECK(block != NULL && ((uintptr_t)block & 4095) == 0 && block[999] == 5);
+  free_align(block);
+  CHECK(calloc_align((size_t)-1, 16, 7) == NULL);
   memset(lines, 1, sizeof lines);
   __dcbt(lines);
   __dcbtst(lines);

@@ -50,5 +50,5 @@ int main(void) {
   kinds();
   strings();
   integers();
-  exit(failures);
+  _Exit(failures);
 }

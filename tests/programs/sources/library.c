@@ -1,11 +1,13 @@
 /* The C library of the local store. */
 #include <assert.h>
 #include <ctype.h>
+#include <errno.h>
 #include <libmisc.h>
 #include <limits.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 #include "check.h"
 
@@ -95,6 +97,41 @@ static void heap(void) {
   free_align(aligned);
 }
 
+static void other_names(void) {
+  char text[] = "a,,b", copy[8], *rest = text;
+  void* block = NULL;
+  CHECK(strcmp(strsep(&rest, ","), "a") == 0 && strcmp(strsep(&rest, ","), "") == 0);
+  CHECK(strcmp(strsep(&rest, ","), "b") == 0 && rest == NULL && strsep(&rest, ",") == NULL);
+  CHECK(stpcpy(copy, "abc") == copy + 3 && index(copy, 'b') == copy + 1 && rindex(copy, 'z') == NULL);
+  CHECK(bcmp(copy, "abc", 4) == 0);
+  bcopy(copy, copy + 1, 3);
+  CHECK(memcmp(copy, "aabc", 4) == 0);
+  bzero(copy, 2);
+  CHECK(copy[0] == 0 && copy[1] == 0 && copy[2] == 'b');
+  char* const part = strndup("whole", 3);
+  CHECK(part != NULL && strcmp(part, "who") == 0);
+  free(part);
+  CHECK(posix_memalign(&block, 64, 100) == 0 && ((uintptr_t)block & 63) == 0);
+  free(block);
+  CHECK(posix_memalign(&block, 16, 300000) == ENOMEM);
+  block = aligned_alloc(32, 64);
+  CHECK(((uintptr_t)block & 31) == 0);
+  free(block);
+  int* const zeros = calloc_align(4, sizeof *zeros, 7);
+  CHECK(((uintptr_t)zeros & 127) == 0 && zeros[0] == 0 && zeros[3] == 0);
+  zeros[3] = 9;
+  int* const more = realloc_align(zeros, 4000, 7);
+  CHECK(more != NULL && ((uintptr_t)more & 127) == 0 && more[0] == 0 && more[3] == 9);
+  CHECK(realloc_align(more, 100, 5) == more && realloc_align(more, 300000, 7) == NULL);
+  free_align(more);
+  CHECK(getenv("PATH") == NULL && strtold("2.5", NULL) == 2.5L);
+  CHECK(setvbuf(stdout, NULL, _IONBF, 0) == 0);
+  setbuf(stdout, NULL);
+  CHECK(siprintf(copy, "%d", 42) == 2 && strcmp(copy, "42") == 0);
+  CHECK(sniprintf(copy, 3, "%d", 1234) == 4 && strcmp(copy, "12") == 0);
+  CHECK(iprintf("%s", "") == 0 && fiprintf(stdout, "%s", "") == 0);
+}
+
 static void output(void) {
   char text[80];
   CHECK(snprintf(text, sizeof text, "%d %u %s %c %5.2f|%-4x|%08llX %%", -1, 3000000000u, "spu", 'x', 3.14159,
@@ -114,6 +151,7 @@ int main(int argc, char** argv) {
   numbers();
   copies_of_new_memory();
   heap();
+  other_names();
   output();
   printf("%d failures of %s\n", failures, "library.c");
   exit(failures);

@@ -86,7 +86,7 @@ class InterruptsLeftToTheChild {
 }  // namespace
 
 ChildEnd run_child(const std::vector<std::string>& words, const std::map<std::string, std::string>& variables,
-                   const std::filesystem::path& output) {
+                   const std::filesystem::path& output, int input) {
   SC_ASSERT(!words.empty(), "a child process of {} variables runs nothing", variables.size());
   std::vector<std::string> arguments = words, environment = environment_with(variables);
   posix_spawn_file_actions_t actions;
@@ -94,6 +94,7 @@ ChildEnd run_child(const std::vector<std::string>& words, const std::map<std::st
   if (!output.empty())
     posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, output.c_str(), O_WRONLY | O_CREAT | O_TRUNC,
                                      0600);
+  if (input != STDIN_FILENO) posix_spawn_file_actions_adddup2(&actions, input, STDIN_FILENO);
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
   sigset_t usual;

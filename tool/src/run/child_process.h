@@ -1,6 +1,8 @@
 #pragma once
 // Runs a program with additional variables in its environment.
 
+#include <unistd.h>
+
 #include <filesystem>
 #include <map>
 #include <string>
@@ -17,9 +19,10 @@ struct ChildEnd {
 /// @param words       the program, searched for as a shell does, and its arguments; not empty.
 /// @param variables   are set in its environment; an empty value removes the variable.
 /// @param output      a file that receives its standard output; empty: it shares the caller's.
+/// @param input       the descriptor that it reads as its standard input.
 /// @throws std::runtime_error  the program cannot be started; the message says why.
 ChildEnd run_child(const std::vector<std::string>& words, const std::map<std::string, std::string>& variables,
-                   const std::filesystem::path& output = {});
+                   const std::filesystem::path& output = {}, int input = STDIN_FILENO);
 
 /// A new folder among the temporary files. The destructor removes it with its contents.
 class ScratchFolder {

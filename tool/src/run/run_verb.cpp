@@ -9,6 +9,8 @@
 
 #include "child_process.h"
 #include "command_line/shared_options.h"
+#include "command_line/shell_words.h"
+#include "kept_input.h"
 #include "run_report.h"
 #include "softcell/base/assert.h"
 #include "softcell/base/whole_file.h"
@@ -62,14 +64,16 @@ std::map<std::string, std::string> variables_of(const RunOptions& options) {
   return variables;
 }
 
-ProgramRun run_once(const RunOptions& options, bool collect) {
+/// @param input  of the program, whose output is collected; null: both are those of this process.
+ProgramRun run_once(const RunOptions& options, KeptInput* input = nullptr) {
   SC_ASSERT(!options.words.empty(), "a run of no program under {}", options.dma);
   const ScratchFolder folder;
   const std::string output = "output";
   auto variables = variables_of(options);
   variables["SOFTCELL_REPORT"] = folder.path() / "%p.json";
-  const ChildEnd end =
-      run_child(options.words, variables, collect ? folder.path() / output : std::filesystem::path());
+  const ChildEnd end = input == nullptr
+                           ? run_child(options.words, variables)
+                           : run_child(options.words, variables, folder.path() / output, input->begin_run());
   return program_run(end, folder.text(output), folder.texts(".json"));
 }
 
@@ -81,7 +85,7 @@ nlohmann::ordered_json document(const RunOptions& options, const ProgramRun& run
 }
 
 int run_one(const RunOptions& options, OutputFiles& files, base::WholeFile* json) {
-  const ProgramRun run = run_once(options, false);
+  const ProgramRun run = run_once(options);
   for (const std::string& finding : run.unsaid_findings)
     fmt::print(stderr, "softcell: finding: {}\n", finding);
   fmt::print(stderr, "softcell: {} {}; {}\n", options.words.front(), run.ending(), run.summary());
@@ -97,6 +101,8 @@ int run_many(const RunOptions& options, OutputFiles& files, base::WholeFile* jso
   RunOptions seeded = options;
   seeded.turns = true;
   SC_ASSERT(options.seeds > 0, "{} runs under {} seeds", options.words.size(), options.seeds);
+  const ScratchFolder folder;
+  KeptInput input(folder.path() / "input");
   ProgramRun first;
   std::uint64_t seed = 0;
   bool differs = false;
@@ -104,7 +110,7 @@ int run_many(const RunOptions& options, OutputFiles& files, base::WholeFile* jso
     ProgressBar bar("run", options.seeds, options.quiet);
     while (seed < options.seeds && !differs) {
       seeded.dma = fmt::format("random:{}", ++seed);
-      ProgramRun run = run_once(seeded, true);
+      ProgramRun run = run_once(seeded, &input);
       if (seed == 1) {
         first = std::move(run);
       } else if (const auto difference = first.difference(run)) {
@@ -117,12 +123,14 @@ int run_many(const RunOptions& options, OutputFiles& files, base::WholeFile* jso
     }
   }
   fmt::print("{}", first.output);
-  if (differs) {
+  if (differs && first.report.is_null()) {
+    fmt::print(stderr, "softcell: this is not the order of transfers or SPEs: {}\n", first.summary());
+  } else if (differs) {
     fmt::print(stderr,
                "softcell: the outcome depends on the order of transfers or SPEs; see it again with softcell "
                "run --dma "
                "random:{} --turns{} -- {}\n",
-               seed, options.checked ? " --checked" : "", fmt::join(options.words, " "));
+               seed, options.checked ? " --checked" : "", quoted_for_shell(options.words));
   } else {
     fmt::print(stderr, "softcell: {} seeds: {} {} under each, with the same output; {}\n", seed,
                options.words.front(), first.ending(), first.summary());

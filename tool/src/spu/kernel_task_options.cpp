@@ -1,30 +1,10 @@
 #include "kernel_task_options.h"
 
-#include <algorithm>
-#include <cctype>
-#include <string_view>
-
 #include "command_line/shared_options.h"
+#include "command_line/shell_words.h"
 #include "softcell/dma/addresses.h"
 
 namespace softcell::tool {
-namespace {
-
-std::string quoted(const std::string& word) {
-  const auto plain = [](unsigned char c) {
-    return std::isalnum(c) != 0 ||
-           std::string_view("_-+=:,./@%").find(static_cast<char>(c)) != std::string_view::npos;
-  };
-  if (!word.empty() && std::all_of(word.begin(), word.end(), plain)) return word;
-  std::string text = "'";
-  for (const char c : word) {
-    if (c == '\'') text += "'\\'";
-    text += c;
-  }
-  return text + "'";
-}
-
-}  // namespace
 
 void KernelTaskOptions::add_to(CLI::App& verb) {
   verb.add_option(
@@ -89,7 +69,7 @@ KernelTask KernelTaskOptions::task() const {
 }
 
 std::string KernelTaskOptions::text() const {
-  std::string text = quoted(image_);
+  std::string text = quoted_for_shell(image_);
   if (checked_) text += " --checked";
   if (!engine_.empty()) text += " --engine " + engine_;
   if (entry_ != "libspe2") text += " --entry " + entry_;
@@ -98,7 +78,7 @@ std::string KernelTaskOptions::text() const {
     for (const std::string& value : values) {
       // A value that looks like an option is only taken after '='.
       const bool separate = !value.starts_with('-');
-      text += " " + option + (separate ? " " : "=") + quoted(value);
+      text += " " + option + (separate ? " " : "=") + quoted_for_shell(value);
     }
   };
   add("--in", in_);

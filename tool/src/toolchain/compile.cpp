@@ -20,7 +20,7 @@ constexpr std::string_view kStandardInput = "-";
 void append(Words& to, const Words& words) { to.insert(to.end(), words.begin(), words.end()); }
 
 /// The compiler with the flags of a language, including the headers of the SPU.
-Words command_of(Language language, bool checked, const Places& places) {
+Words command_of(Language language, bool checked, const Options& options, const Places& places) {
   Words command{places.compiler};
   if (language == Language::kC) {
     append(command, {"-x", "c", "-std=gnu17"});
@@ -30,6 +30,7 @@ Words command_of(Language language, bool checked, const Places& places) {
   } else {
     append(command, {"-x", "c++"});
     append(command, flags_of(settings::kCxxFlags, places));
+    command.push_back(options.cxx_standard);
     if (checked) append(command, flags_of(settings::kCxxCheckedFlags, places));
     append(command, {"-isystem", (places.sdk / "..").lexically_normal().string()});
   }
@@ -64,6 +65,23 @@ Words without_dependencies(const Words& options) {
   return words;
 }
 
+/// Takes the folders of -isystem out of the words.
+Words take_system_folders(Words& words) {
+  constexpr std::string_view kOption = "-isystem";
+  Words folders, others;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (!words[i].starts_with(kOption)) {
+      others.push_back(words[i]);
+    } else if (words[i].size() > kOption.size()) {
+      folders.push_back(words[i].substr(kOption.size()));
+    } else if (++i < words.size()) {
+      folders.push_back(words[i]);
+    }
+  }
+  words = std::move(others);
+  return folders;
+}
+
 void say(const Options& options, const Words& command) {
   if (!options.verbose) return;
   std::string text;
@@ -80,19 +98,27 @@ void compile_flavour(const Input& source, const std::filesystem::path& object, b
     if (source.file == kStandardInput) lseek(STDIN_FILENO, 0, SEEK_SET);
     if (const int status = run(command, checked); status != 0) throw Failed{status};
   };
-  Words command = command_of(*source.language, checked, places);
-  append(command, preprocessor);
-  append(command, options.compiler);
+  Words command = command_of(*source.language, checked, options, places);
   if (*source.language == Language::kCxx) {
+    append(command, preprocessor);
+    append(command, options.compiler);
     append(command, {"-c", source.file, "-o", object.string()});
     return go(command);
   }
+  // A program's own system headers are rewritten as its other ones are. softcell's headers stay as they are.
+  Words words = preprocessor;
+  const Words system_folders = take_system_folders(words);
+  append(command, words);
+  for (const std::string& folder : system_folders) append(command, {"-I", folder});
+  append(command, options.compiler);
   // Between preprocessor and compiler, another program gives casts of vectors the meaning that they have on an SPU.
   const std::string text = scratch.file("source.i"), rewritten = scratch.file("rewritten.i");
   append(command, {"-E", source.file, "-o", text});
   go(command);
-  go({places.vector_casts.string(), text, rewritten});
-  command = command_of(Language::kC, checked, places);
+  Words rewrite{places.vector_casts.string(), text, rewritten};
+  append(rewrite, system_folders);
+  go(rewrite);
+  command = command_of(Language::kC, checked, options, places);
   command[2] = "cpp-output";
   append(command, options.compiler);
   append(command, flags_of(settings::kCRewrittenFlags, places));
@@ -126,7 +152,7 @@ void compile(const Input& source, const std::filesystem::path& object, const Opt
 void preprocess(const Options& options, const Places& places) {
   for (const Input& input : options.inputs) {
     if (!input.language) continue;
-    Words command = command_of(*input.language, false, places);
+    Words command = command_of(*input.language, false, options, places);
     append(command, options.preprocessor);
     append(command, options.compiler);
     if (options.step == Step::kPreprocess) append(command, options.macros);

@@ -151,6 +151,7 @@ class Parser {
       take_standard(word);
     } else if (word == "-ansi") {
       if (language_ == Language::kC) options_.compiler.push_back("-std=gnu90");
+      options_.cxx_standard = "-std=c++17";
     } else if (is_any(word, "-pipe", "-static", "-O", "-O1", "-O2", "-O3", "-Os", "-pthread", "-s") ||
                starts_with_any(word, "-g", "-mtune=", "-march=", "-mcpu=")) {
       // These options do not change a program's speed here, nor what a debugger knows of it.
@@ -195,8 +196,7 @@ class Parser {
       take_keyword(value(word, word));
     } else if (word.starts_with("--defsym=")) {
       options_.linker.push_back(word);
-    } else if (is_any(word, "-e", "-T", "-m", "-u", "-h", "-Ttext", "-Tdata", "-Tbss", "--script",
-                      "--entry")) {
+    } else if (is_ignored_with_value(word)) {
       options_.meaningless.push_back(word + " " + value(word, word));
     } else if (word == "--defsym") {
       options_.linker.insert(options_.linker.end(), {word, value(word, word)});
@@ -207,17 +207,26 @@ class Parser {
 
   /// Takes linker options that are separated by commas; some use the next word as their value.
   void take_linker_list(std::string_view list) {
-    Words words;
     for (std::size_t at = 0; at <= list.size();) {
       const auto comma = std::min(list.find(',', at), list.size());
-      words.emplace_back(list.substr(at, comma - at));
+      passed_on_.emplace_back(list.substr(at, comma - at));
       at = comma + 1;
     }
-    const Words outer = std::exchange(words_, words);
+    // The value may come with the next -Xlinker or -Wl.
+    if (!needs_linker_value(passed_on_.back())) take_passed_on();
+  }
+  void take_passed_on() {
+    const Words outer = std::exchange(words_, std::exchange(passed_on_, {}));
     const std::size_t outer_at = std::exchange(at_, 0);
     for (; at_ < words_.size(); ++at_) take_linker_word(words_[at_]);
     words_ = outer;
     at_ = outer_at;
+  }
+  static bool needs_linker_value(std::string_view word) {
+    return is_any(word, "-o", "-l", "-L", "-Map", "-z", "--defsym") || is_ignored_with_value(word);
+  }
+  static bool is_ignored_with_value(std::string_view word) {
+    return is_any(word, "-e", "-T", "-m", "-u", "-h", "-Ttext", "-Tdata", "-Tbss", "--script", "--entry");
   }
 
   void take_keyword(const std::string& keyword) {
@@ -245,6 +254,7 @@ class Parser {
       options_.compiler.push_back(word);
     } else if (std::ranges::any_of(kOld, [&](const char* year) { return word.ends_with(year); })) {
       options_.meaningless.push_back(word);
+      if (word.find("gnu") == word.npos) options_.cxx_standard = "-std=c++17";
     } else {
       options_.compiler.push_back(word);
     }
@@ -276,6 +286,7 @@ class Parser {
   }
 
   void finish() {
+    take_passed_on();
     // From the last to the first, so that the positions of the others do not change.
     for (auto library = libraries_.rbegin(); library != libraries_.rend(); ++library) {
       const auto& [name, place] = *library;
@@ -300,11 +311,16 @@ class Parser {
 
   std::optional<std::string> find_library(const std::string& name) const {
     for (const std::string& folder : folders_) {
-      const std::filesystem::path file = std::filesystem::path(folder) / ("lib" + name + ".a");
+      // -l:NAME names the file itself.
+      const std::filesystem::path file =
+          std::filesystem::path(folder) / (name.starts_with(':') ? name.substr(1) : "lib" + name + ".a");
       if (std::filesystem::exists(file)) return file.string();
     }
     if (is_in_library(name)) return std::nullopt;
     if (options_.step != Step::kLink) return std::nullopt;
+    if (name.starts_with(':'))
+      throw std::invalid_argument("-l" + name + ": there is no file " + name.substr(1) +
+                                  " in the folders of -L");
     throw std::invalid_argument("-l" + name + ": there is no lib" + name +
                                 ".a in the folders of -L, and softcell's "
                                 "library has no part of that name");
@@ -315,6 +331,7 @@ class Parser {
   const Language language_;
   std::optional<Language> forced_;
   Words folders_;
+  Words passed_on_;  ///< words for the linker whose last one needs a value
   std::vector<std::pair<std::string, std::size_t>> libraries_;  ///< with the input that follows it
   Options options_;
 };

@@ -28,7 +28,9 @@ struct Options {
   Words preprocessor;         ///< -I, -D, -M..., for the preprocessor
   Words macros;               ///< -dM and the like, for -E only
   Words compiler;             ///< warnings and options of the language
-  Words linker;               ///< -Map and the like, in the form that ld takes
+  /// Of C++ sources, unless `compiler` has another one. Like an SPU's compiler, it knows GNU's words.
+  std::string cxx_standard = "-std=gnu++17";
+  Words linker;                              ///< -Map and the like, in the form that ld takes
   std::optional<std::uint32_t> stack_bytes;  ///< -Wl,-z,stack-size=BYTES
   bool relocatable = false;                  ///< -r
   bool verbose = false;

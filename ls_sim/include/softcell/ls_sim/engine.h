@@ -39,6 +39,8 @@ struct EntryArguments {
   EntryState entry_state = EntryState::kLibspe2;  ///< only for SPU programs
   /// The words of three registers, for a native kernel whose main takes vectors; nothing: they begin with the three numbers.
   std::optional<std::array<std::uint32_t, 12>> registers = {};
+  /// Whether static data begin the run as they were linked. SPE contexts leave the local store as it is, which an image is loaded into once.
+  bool data_as_linked = true;
 };
 
 /// The result of a run, which ends by main's return (or spu_stop) with a stop code, or by a fault.

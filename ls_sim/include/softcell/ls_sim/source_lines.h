@@ -11,7 +11,7 @@ namespace softcell::ls_sim {
 
 /// A line of a source file.
 struct SourcePlace {
-  std::string file;  ///< as passed to the compiler; empty: not known
+  std::string file;  ///< absolute, if the compiler has written where it ran; empty: not known
   int line = 0;
 };
 

@@ -58,7 +58,8 @@ class SpeContext {
   /// @throws std::logic_error  the context runs.
   virtual void load(std::shared_ptr<const KernelImage> image) = 0;
 
-  /// Runs the loaded image from its entry to its next stop, and waits for the stop.
+  /// Runs the loaded image from its entry to its next stop, and waits for the stop. A second run finds the local store as the first one
+  /// left it, static data included.
   /// @throws std::logic_error  the context runs, or nothing was loaded.
   /// @throws std::runtime_error  the host has no thread left.
   virtual ContextStop run(const EntryArguments& arguments) = 0;

@@ -9,7 +9,7 @@
 #define SYS_PROCESS_PARAM(priority, stack_bytes) \
   enum { softcell_process_priority = (priority), softcell_process_stack_bytes = (stack_bytes) };
 
-static inline void sysProcessExit(s32 status) { exit(status); }
-static inline sys_pid_t sysProcessGetPid(void) { return (sys_pid_t)getpid(); }
+static __inline__ void sysProcessExit(s32 status) { exit(status); }
+static __inline__ sys_pid_t sysProcessGetPid(void) { return (sys_pid_t)getpid(); }
 
 #endif

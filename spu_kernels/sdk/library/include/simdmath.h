@@ -8,7 +8,7 @@
 #include <math.h>
 #include <spu_intrinsics.h>
 
-#define SC_SIMD_INLINE static inline __attribute__((unused))
+#define SC_SIMD_INLINE static __inline__ __attribute__((unused))
 
 SC_SIMD_INLINE vec_float4 fabsf4(vec_float4 v_) {
   return (vec_float4)spu_and((vec_uint4)v_, spu_splats(0x7FFFFFFFu));

@@ -14,6 +14,9 @@ typedef struct softcell_file FILE;
 #define BUFSIZ 1024
 #define FILENAME_MAX 4096
 #define FOPEN_MAX 64
+#define _IOFBF 0
+#define _IOLBF 1
+#define _IONBF 2
 #define SEEK_SET 0
 #define SEEK_CUR 1
 #define SEEK_END 2
@@ -27,6 +30,12 @@ int vprintf(const char* format, va_list arguments);
 int vfprintf(FILE* file, const char* format, va_list arguments);
 int vsprintf(char* to, const char* format, va_list arguments);
 int vsnprintf(char* to, size_t bytes, const char* format, va_list arguments);
+/// As newlib has them for programs that print no floats: here they are the same functions.
+int iprintf(const char* format, ...) __asm__("printf") __attribute__((format(printf, 1, 2)));
+int fiprintf(FILE* file, const char* format, ...) __asm__("fprintf") __attribute__((format(printf, 2, 3)));
+int siprintf(char* to, const char* format, ...) __asm__("sprintf") __attribute__((format(printf, 2, 3)));
+int sniprintf(char* to, size_t bytes, const char* format, ...) __asm__("snprintf")
+    __attribute__((format(printf, 3, 4)));
 int puts(const char* text);
 int putchar(int c_);
 int fputs(const char* text, FILE* file);
@@ -34,6 +43,9 @@ int fputc(int c_, FILE* file);
 int putc(int c_, FILE* file);
 size_t fwrite(const void* from, size_t bytes, size_t count, FILE* file);
 int fflush(FILE* file);
+/// The buffers are those of the PPU side, and stay as they are.
+void setbuf(FILE* file, char* buffer);
+int setvbuf(FILE* file, char* buffer, int mode, size_t bytes);
 void perror(const char* text);
 
 int scanf(const char* format, ...) __attribute__((format(scanf, 1, 2)));

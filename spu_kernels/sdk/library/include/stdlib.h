@@ -25,6 +25,9 @@ void* calloc(size_t count, size_t bytes);
 void* realloc(void* old, size_t bytes);
 /// @param alignment  a power of two
 void* memalign(size_t alignment, size_t bytes);
+void* aligned_alloc(size_t alignment, size_t bytes);
+/// @return  ENOMEM when there is no room
+int posix_memalign(void** memory, size_t alignment, size_t bytes);
 void free(void* memory);
 
 int abs(int value);
@@ -45,6 +48,7 @@ unsigned long long strtoull(const char* text, char** end, int base);
 double strtod(const char* text, char** end);
 /// The float nearest to that double, where too large ones are the largest and those below 2^-126 are 0.
 float strtof(const char* text, char** end);
+long double strtold(const char* text, char** end) __asm__("strtod");
 double atof(const char* text);
 
 /// The same numbers in every run. rand() is 0..RAND_MAX.
@@ -60,6 +64,9 @@ void* bsearch(const void* key, const void* array, size_t count, size_t bytes,
 /// Ends the program with the stop code 0x2000 + the low eight bits of the status.
 void exit(int status) __attribute__((noreturn));
 void _exit(int status) __attribute__((noreturn));
+void _Exit(int status) __asm__("_exit") __attribute__((noreturn));
+/// A local store has no environment: always null.
+char* getenv(const char* name);
 /// Ends it with status 1 and a message.
 void abort(void) __attribute__((noreturn));
 /// Called by exit(), the last first; 32 at most. @return  0, or -1 when there is no room.

@@ -29,6 +29,12 @@ char* strpbrk(const char* s_, const char* these);
 char* strtok(char* s_, const char* separators);
 char* strtok_r(char* s_, const char* separators, char** rest);
 char* strdup(const char* s_);
+char* strndup(const char* s_, size_t most);
+/// @return  the end of the copy
+char* stpcpy(char* to, const char* from);
+char* strsep(char** rest, const char* separators);
+void bzero(void* to, size_t bytes);
+void bcopy(const void* from, void* to, size_t bytes);
 /// Of a number in errno.h.
 char* strerror(int error);
 __END_DECLS
