@@ -175,6 +175,22 @@ void check_scene_kept(const std::vector<std::filesystem::path>& scene, const Dem
     check_kept({{"a file of the scene", file}}, written_files(options));
 }
 
+std::string scene_to_load(const DemoOptions& options, int dimension,
+                          const std::optional<std::string>& recorded, const std::string& usual) {
+  if (options.scene) return *options.scene;
+  if (!recorded) return usual;
+  SC_ASSERT(options.replay, "a recording of the scene {} has no name", *recorded);
+  // A recording may name any file, and is no reason to run a script.
+  const auto is_it = [&](const demos::SceneListing& listing) {
+    return listing.dimension == dimension && listing.name == *recorded;
+  };
+  if (std::ranges::any_of(demos::list_scenes(), is_it)) return *recorded;
+  throw std::runtime_error(
+      fmt::format("{}: a recording of the scene {}, which does not come with softcell; give its file with "
+                  "--scene",
+                  options.replay->string(), *recorded));
+}
+
 int run_demo(const DemoOptions& options, std::string_view verb, const LoadScenes& load) {
   if (!options.headless && (options.out || options.video)) {
     throw UsageError("--out and --video write pictures without a window: give --headless too");
