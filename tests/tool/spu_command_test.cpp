@@ -352,6 +352,11 @@ TEST_F(SpuCommand, SaysHowMuchOfACheckedStackIsForTheChecks) {
       << run.output;
   EXPECT_EQ(read_json(folder_ / "s.json")["local_store"]["stack_for_checks"], 1024);
 
+  const CommandResult on_spu =
+      run_softcell("spu budget --checked " SOFTCELL_SPU_PROGRAMS "/scale_stream.O2.elf");
+  EXPECT_EQ(on_spu.status, 0) << on_spu.output;
+  EXPECT_EQ(on_spu.output.find("instrumented"), std::string::npos)
+      << "a program built for the SPU has no such flavour: " << on_spu.output;
   const CommandResult budget =
       run_softcell("spu budget --checked " + kSaxpy + " --json " + (folder_ / "b.json"));
   ASSERT_EQ(budget.status, 0) << budget.output;
