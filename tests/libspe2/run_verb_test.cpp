@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -45,6 +46,8 @@ TEST(RunVerb, CountsWhatContextsHaveMovedThatTheProgramHasNotDestroyed) {
 TEST(RunVerb, EndsAsTheProgramDoes) {
   EXPECT_EQ(run_softcell("run -- " + kForgets + " 17").status, 17);
   EXPECT_EQ(run_softcell("run -- sh -c 'kill -9 $$'").status, 137);
+  EXPECT_EQ(run_softcell("run -- sh -c 'kill -s XFSZ $$'").status, 128 + SIGXFSZ)
+      << "a signal that softcell ignores and the program does not";
   const CommandResult other = run_softcell("run -- true");
   EXPECT_EQ(other.status, 0);
   EXPECT_TRUE(has(other, "no SPE context was made")) << other.output;

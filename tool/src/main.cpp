@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <exception>
@@ -67,6 +68,8 @@ void finish_printing() {
 }  // namespace
 
 int main(int argc, char** argv) {
+  // A write beyond the limit of file sizes fails as one to a full disk does, and does not end the process.
+  std::signal(SIGXFSZ, SIG_IGN);
   try {
     CommandLine command_line;
     try {

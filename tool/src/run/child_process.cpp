@@ -100,6 +100,7 @@ ChildEnd run_child(const std::vector<std::string>& words, const std::map<std::st
   sigemptyset(&usual);
   sigaddset(&usual, SIGINT);
   sigaddset(&usual, SIGQUIT);
+  sigaddset(&usual, SIGXFSZ);  // main() ignores it
   posix_spawnattr_setsigdefault(&attributes, &usual);
   posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF);
 
