@@ -264,15 +264,24 @@ TEST(Quiet, PrintsNothing) {
 
 TEST(ProgressBar, SaysHowMuchTimeIsLeft) {
   using std::chrono::seconds;
-  EXPECT_EQ(progress_line("demo 2d", 0, 10, seconds(0)), "demo 2d [" + std::string(40, ' ') + "]   0%");
-  EXPECT_EQ(progress_line("x", 10, 40, seconds(0)),
+  EXPECT_EQ(progress_line("demo 2d", 0, 10, seconds(0), 80), "demo 2d [" + std::string(40, ' ') + "]   0%");
+  EXPECT_EQ(progress_line("x", 10, 40, seconds(0), 80),
             "x [" + std::string(10, '=') + std::string(30, ' ') + "]  25%")
       << "the first second says too little";
-  EXPECT_TRUE(progress_line("x", 10, 40, seconds(20)).ends_with("]  25%  1:00 left"));
-  EXPECT_TRUE(progress_line("x", 20, 40, seconds(9)).ends_with("]  50%  0:09 left"));
-  EXPECT_TRUE(progress_line("x", 1, 1000, seconds(11)).ends_with("]   0%  3:03:09 left"));
-  EXPECT_TRUE(progress_line("x", 40, 40, seconds(80)).ends_with("] 100%"));
-  EXPECT_TRUE(progress_line("x", 0, 0, seconds(1)).ends_with("] 100%"));
+  EXPECT_TRUE(progress_line("x", 10, 40, seconds(20), 80).ends_with("]  25%  1:00 left"));
+  EXPECT_TRUE(progress_line("x", 20, 40, seconds(9), 80).ends_with("]  50%  0:09 left"));
+  EXPECT_TRUE(progress_line("x", 1, 1000, seconds(11), 80).ends_with("]   0%  3:03:09 left"));
+  EXPECT_TRUE(progress_line("x", 40, 40, seconds(80), 80).ends_with("] 100%"));
+  EXPECT_TRUE(progress_line("x", 0, 0, seconds(1), 80).ends_with("] 100%"));
+}
+
+TEST(ProgressBar, FitsIntoANarrowTerminal) {
+  using std::chrono::seconds;
+  EXPECT_EQ(progress_line("demo 2d", 10, 20, seconds(30), 39), "demo 2d [====     ]  50%  0:30 left");
+  EXPECT_EQ(progress_line("demo 2d", 10, 20, seconds(30), 20), "demo 2d  50%");
+  EXPECT_EQ(progress_line("demo 2d", 10, 20, seconds(30), 9), "demo 2d  ");
+  for (std::size_t columns = 0; columns < 90; ++columns)
+    EXPECT_LE(progress_line("spu explore", 1, 1000, seconds(300), columns).size(), columns);
 }
 
 }  // namespace
