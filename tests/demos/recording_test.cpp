@@ -125,6 +125,8 @@ TEST(Recording, WhatIsWrongIsSaidWithItsLine) {
       {"softcell recording 2\n",
        "line 1: a recording of another version, 'softcell recording 2'; this softcell reads 'softcell "
        "recording 1'"},
+      {"softcell recording 1\r\ndimension 2\r\n",
+       "line 1: the line ends in CR LF, as of Windows; lines of a recording end in LF"},
       {"softcell recording 1\ndimension 3\n", "line 2: this is a recording of demo 3d, and this is demo 2d"},
       {"softcell recording 1\ndimension 4\n", "line 2: the dimension '4' is not a number from 2 to 3"},
       {"softcell recording 1\ndimension 2\nscene \n",

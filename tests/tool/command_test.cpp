@@ -729,6 +729,9 @@ TEST(Command, SavesASceneThatBeginsWithWhatThereIs) {
   };
   EXPECT_NE(refusal("--frames 1 --save-scene s.lua", 2).find("give a file name that ends in .toml"),
             std::string::npos);
+  EXPECT_NE(
+      refusal("--frames 1 --save-scene s.state", 2).find("--save-scene s.state: give a file name that ends"),
+      std::string::npos);
   EXPECT_NE(refusal("--frames 1 --save-scene -", 2).find("cannot write to standard output"),
             std::string::npos);
   EXPECT_NE(refusal("--frames 1 --scene s.toml --save-scene s.toml", 2).find("and --save-scene are one file"),
@@ -736,6 +739,8 @@ TEST(Command, SavesASceneThatBeginsWithWhatThereIs) {
   EXPECT_NE(refusal("--frames 1 --save-scene x.toml --json x.state", 2).find("the state of --save-scene"),
             std::string::npos);
   EXPECT_NE(refusal("--frames 1000 --save-scene none/x.toml", 1).find("none/x.toml"), std::string::npos);
+  EXPECT_NE(refusal("--ui-scale 2", 2).find("--ui-scale is for text and menus in a window"),
+            std::string::npos);
   EXPECT_NE(refusal("--ui-scale 9", 2).find("--ui-scale 9: give a number from 0.5 to 4"), std::string::npos);
 }
 
