@@ -159,7 +159,8 @@ std::vector<std::string> ScratchFolder::texts(const std::string& extension) cons
   std::vector<std::string> texts;
   for (const std::filesystem::path& file : files)
     // A process that was ended while it wrote has left a hidden file.
-    if (file.extension() == extension && !file.filename().string().starts_with('.')) texts.push_back(text_of(file));
+    if (file.extension() == extension && !file.filename().string().starts_with('.'))
+      texts.push_back(text_of(file));
   return texts;
 }
 
