@@ -121,9 +121,11 @@ void Machine::at_exit() {
     machine.end_runs();
     machine.count_contexts();
     machine.print_findings();
-    machine.write_trace();
-    const std::lock_guard lock(machine.report_mutex_);
-    machine.write_report(Report::kWhole);
+    {
+      const std::lock_guard lock(machine.report_mutex_);
+      machine.write_report(Report::kWhole);
+    }
+    machine.write_trace();  // the longest of the files, which may not fit on the disk
   } catch (const std::exception& error) {
     complain(error.what());
   }

@@ -4,9 +4,11 @@
 #include <SDL_syswm.h>
 #include <dlfcn.h>
 #include <poll.h>
+#include <unistd.h>
 
 #include <atomic>
 #include <chrono>
+#include <cstdio>
 #include <cstdlib>
 #include <thread>
 
@@ -31,9 +33,17 @@ void end_later(Display* /*display*/, void* /*data*/) {
   std::exit(1);
 }
 
+/// Libraries of OpenGL call Xlib when the program ends, and Xlib may wait for ever then.
+void end_without_libraries(int status, void* /*data*/) {
+  if (!display_lost) return;
+  std::fflush(nullptr);
+  _exit(status);
+}
+
 }  // namespace
 
 DisplayWatch::DisplayWatch(SDL_Window* window) {
+  [[maybe_unused]] static const int once = on_exit(end_without_libraries, nullptr);
   display_lost = false;
   polling_thread = std::this_thread::get_id();
   SDL_SysWMinfo info;
@@ -58,7 +68,8 @@ bool DisplayWatch::lost() const {
   if (display_lost) return true;
   if (connection_ < 0) return false;
   pollfd connection{connection_, 0, 0};
-  return poll(&connection, 1, 0) > 0 && (connection.revents & (POLLHUP | POLLERR)) != 0;
+  if (poll(&connection, 1, 0) > 0 && (connection.revents & (POLLHUP | POLLERR)) != 0) display_lost = true;
+  return display_lost;
 }
 
 }  // namespace softcell::render

@@ -267,6 +267,17 @@ TEST(Environment, AWrongValueEndsTheProgramWithASentence) {
   }
 }
 
+TEST(Environment, ATraceThatCannotBeWrittenLeavesTheReportWhole) {
+  const ScratchFolder folder;
+  const CommandResult run =
+      run_shell("SOFTCELL_TRACE=/none/t.json SOFTCELL_REPORT=" + (folder / "r.json") + " " + kForgets);
+  EXPECT_TRUE(has(run, "cannot write /none/t.json: ")) << run.output;
+  std::ifstream file(folder / "r.json");
+  const auto report = nlohmann::json::parse(file);
+  EXPECT_EQ(report["whole"], true);
+  EXPECT_EQ(report["dma_commands"], 1);
+}
+
 TEST(Environment, ADeadlineEndsAProgramThatNeverEnds) {
   const CommandResult run = run_shell("SOFTCELL_DEADLINE_MS=300 " LIBSPE2_PROGRAMS "/libspe2_never_ends");
   EXPECT_EQ(run.status, 0) << run.output;
