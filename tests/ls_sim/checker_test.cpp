@@ -208,6 +208,32 @@ TEST_F(CheckerTest, ALoadIsFreeAfterTheWaitAndNotAfterThatOfAnotherTag) {
   EXPECT_EQ(rules(), Texts{"load-in-flight"});
 }
 
+TEST_F(CheckerTest, ALoadIsFreeWhenTheStatusOfAllTagsCanBeRead) {
+  issue(MfcOpcode::get, buffer_, kEa, 128, 3);
+  checker_.write(22, 1u << 3 | 1u << 4);
+  checker_.write(23, 1);
+  checker_.count(24);
+  load(buffer_, 4);
+  EXPECT_EQ(rules(), Texts{"load-in-flight"}) << "any of two tags may be the other one";
+  checker_.write(23, 2);
+  checker_.count(23);
+  checker_.count(24);
+  load(buffer_ + 4, 4);
+  EXPECT_EQ(rules(), Texts{"load-in-flight"});
+}
+
+TEST_F(CheckerTest, AVariableOfAFunctionThatHasReturnedIsNoBuffer) {
+  const std::uint32_t variable = dma::kLocalStoreBytes - 384;
+  store(variable, 128);
+  issue(MfcOpcode::put, variable, kEa, 128, 3);
+  checker_.on_access({{buffer_}, 4, true, engine_.at, {variable - 64}});
+  checker_.on_access({{buffer_}, 4, true, engine_.at, {variable + 64}});
+  EXPECT_EQ(rules(), Texts{}) << "its function runs, and calls others";
+  checker_.on_access({{buffer_}, 4, true, engine_.at, {variable + 128}});
+  checker_.on_access({{buffer_}, 4, true, engine_.at, {variable + 128}});
+  EXPECT_EQ(rules(), Texts{"store-in-flight"}) << "once";
+}
+
 TEST_F(CheckerTest, TheFindingSaysWhichCommandAndWhereItWasIssued) {
   issue(MfcOpcode::get, buffer_, kEa, 128, 3);
   load(buffer_ + 16, 4);

@@ -137,7 +137,9 @@ class Checker final : public ChannelPort, public AccessObserver {
   void check_line_command(const CommandInFlight& line);
   void check_local_range(const dma::MfcCommand& command, const MovedRange& range, bool is_get);
   void end_reservation(const dma::MfcCommand& by);
+  void check_frames(Address here, std::uint32_t stack_pointer);
   void complete(std::uint32_t tags);
+  void on_condition_holds();
   void on_tag_update(std::uint32_t condition);
   void on_list_stall(std::uint32_t tags);
   void on_list_acknowledged(std::uint32_t tag);
@@ -165,9 +167,12 @@ class Checker final : public ChannelPort, public AccessObserver {
   UnsyncedBytes unsynced_;
   CommandsInFlight in_flight_;
   std::uint32_t tag_mask_ = 0;
-  std::uint32_t tags_issued_ = 0;  ///< since each was last waited for
+  std::uint32_t tags_issued_ = 0;    ///< since each was last waited for
+  bool stack_is_in_flight_ = false;  ///< a command may move variables of functions
   bool stack_overflow_known_ = false;
   bool is_waiting_ = false;                  ///< the open tag-status request is one that waits
+  bool waits_for_all_ = false;               ///< and for all tags of its mask
+  std::uint32_t mask_asked_ = 0;             ///< the mask when the request was made
   std::uint64_t asked_at_ = 0;               ///< number of the last command when the request was made
   std::optional<QuadwordStore> last_store_;  ///< not yet looked at
   std::optional<LineCommand> status_unread_;
