@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "ppu/bodies/lost_momenta.h"
+#include "ppu/bodies/stillness.h"
 #include "ppu/bodies/workshop.h"
 #include "ppu/matching/plastic_flow.h"
 #include "ppu/matching/rotation.h"
@@ -224,10 +225,12 @@ SoftBody<kDimension>& SoftBody<kDimension>::operator=(SoftBody&& other) noexcept
   std::swap(rest_, other.rest_);
   std::swap(steps_since_look_, other.steps_since_look_);
   std::swap(asleep_, other.asleep_);
-  // As above.
-  if (has_other_rest) ++rest_revision_;
-  ++revision_;
-  ++resets_;
+  // As above; the other body has another state now, too.
+  for (SoftBody* const body : {this, &other}) {
+    if (has_other_rest) ++body->rest_revision_;
+    ++body->revision_;
+    ++body->resets_;
+  }
   return *this;
 }
 
@@ -545,12 +548,9 @@ auto SoftBody<kDimension>::precise_centre_of_mass() const -> Eigen::Vector<doubl
 
 template <int kDimension>
 float SoftBody<kDimension>::mean_speed() const {
-  double mass = 0, twice_energy = 0;
-  for (std::size_t i = 0; i < v_.size(); ++i) {
-    mass += double{model_->masses()[i]};
-    twice_energy += double{model_->masses()[i]} * double{v_[i].squaredNorm()};
-  }
-  return static_cast<float>(std::sqrt(twice_energy / mass));
+  MeanSpeed speed;
+  for (std::size_t i = 0; i < v_.size(); ++i) speed.add(model_->masses()[i], v_[i]);
+  return speed.value();
 }
 
 template <int kDimension>

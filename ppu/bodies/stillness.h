@@ -1,14 +1,34 @@
 #pragma once
 
+#include <Eigen/Core>
+#include <cmath>
+
 #include "softcell/base/assert.h"
 
 namespace softcell::ppu {
+
+/// The root mean square of particles' speeds, weighted by mass.
+class MeanSpeed {
+ public:
+  /// @param velocity  m/s
+  template <int kDimension>
+  void add(float mass, const Eigen::Matrix<float, kDimension, 1>& velocity) {
+    mass_ += double{mass};
+    twice_energy_ += double{mass} * double{velocity.squaredNorm()};
+  }
+  float value() const { return static_cast<float>(std::sqrt(twice_energy_ / mass_)); }  ///< m/s
+
+ private:
+  double mass_ = 0, twice_energy_ = 0;
+};
 
 /// Measures for how long a soft body has been still. The mean speed is smoothed, because a single particle of a pressed body may jump for a
 /// step although the body stays in place. Used by one thread.
 class Stillness {
  public:
-  /// Call it after each step. @param mean_speed  SoftBody::mean_speed(), m/s @param speed  m/s: slower bodies are still
+  /// Call it after each step.
+  /// @param mean_speed  m/s: with which particles have really moved. It is SoftBody::mean_speed() unless contacts push them, too
+  /// @param speed  m/s: slower bodies are still
   void count(float step, float mean_speed, float speed) {
     SC_ASSERT(step > 0 && speed >= 0, "a body slower than {} m/s is still for {} s", speed, step);
     constexpr float kSmoothing = 0.25f;  // seconds

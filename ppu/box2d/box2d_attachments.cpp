@@ -26,8 +26,7 @@ Eigen::Matrix2f rotation_of(float angle) {
   return rotation;
 }
 
-AttachmentFrame<2> frame_of(const b2Body& rigid) {
-  const b2Transform& pose = rigid.GetTransform();
+AttachmentFrame<2> frame_of(const b2Transform& pose) {
   AttachmentFrame<2> frame;
   frame.position = frame.end_position = to_eigen(pose.p);
   frame.rotation << pose.q.c, -pose.q.s, pose.q.s, pose.q.c;
@@ -88,7 +87,7 @@ AttachmentId Box2dAttachments::add(Box2dBody& body, const Patch<2>& patch, b2Bod
       throw std::invalid_argument("the rigid body of an attachment is not in this world");
     if (soft_body_of_(*rigid) != nullptr)
       throw std::invalid_argument("the rigid body of an attachment is a particle of a soft one");
-    frame = frame_of(*rigid);
+    frame = frame_of(rigid->GetTransform());
     if (settings.kind == AttachmentKind::kRope && !full.point) full.point = to_eigen(rigid->GetWorldCenter());
   } else {
     frame = frame_in_world(full, particles);
@@ -165,7 +164,7 @@ std::optional<AttachmentEnds<2>> Box2dAttachments::ends(AttachmentId id) const {
   if (link == nullptr || (link->rigid != nullptr && !has_body(world_, link->rigid))) return std::nullopt;
   return link->rows.ends(link->a->soft().positions(),
                          link->b != nullptr ? link->b->soft().positions() : std::span<const Vector2f>(),
-                         link->rigid != nullptr ? frame_of(*link->rigid) : link->hold.frame);
+                         link->rigid != nullptr ? frame_of(link->rigid->GetTransform()) : link->hold.frame);
 }
 
 std::vector<EndedAttachment> Box2dAttachments::take_ended() { return std::exchange(ended_, {}); }
@@ -225,7 +224,9 @@ std::uint32_t Box2dAttachments::number_of(b2Body& rigid, float step) {
   added.velocity = to_eigen(rigid.GetLinearVelocity());
   added.spin = rigid.GetAngularVelocity();
   if (rigid.GetType() == b2_dynamicBody) {
-    added.velocity += to_eigen(fall_of(rigid, world_.GetGravity(), step));
+    const VelocityGain gain = velocity_gain(rigid, world_.GetGravity(), step);
+    added.velocity += to_eigen(gain.linear);
+    added.spin += gain.angular;
     added.inverse_mass = inverse_mass_of(rigid);
     added.inverse_inertia = inverse_inertia_of(rigid);
   }
@@ -233,19 +234,20 @@ std::uint32_t Box2dAttachments::number_of(b2Body& rigid, float step) {
   return static_cast<std::uint32_t>(rigids_.size() - 1);
 }
 
-/// Takes the step's gravity out of velocities, as Box2D adds it after this.
+/// Takes what the step's forces add out of velocities, as Box2D adds it after this.
 void Box2dAttachments::move_rigids(float step) const {
   for (std::size_t i = 0; i < rigids_.size(); ++i) {
     b2Body& rigid = *rigid_bodies_[i];
     if (rigid.GetType() != b2_dynamicBody) continue;
-    rigid.SetLinearVelocity(to_box2d(rigids_[i].velocity) - fall_of(rigid, world_.GetGravity(), step));
-    rigid.SetAngularVelocity(rigids_[i].spin);
+    const VelocityGain gain = velocity_gain(rigid, world_.GetGravity(), step);
+    rigid.SetLinearVelocity(to_box2d(rigids_[i].velocity) - gain.linear);
+    rigid.SetAngularVelocity(rigids_[i].spin - gain.angular);
   }
 }
 
 std::span<const AttachmentInStep<2>> Box2dAttachments::begin(
-    std::span<const std::unique_ptr<Box2dBody>> bodies,
-    const std::function<std::uint32_t(b2Body&)>& number_of, float step) {
+    std::span<const std::unique_ptr<Box2dBody>> bodies, const std::function<RigidInStep(b2Body&)>& in_step_of,
+    float step) {
   end_gone();
   to_solve_.clear();
   for (const auto& link : links_) {
@@ -258,8 +260,9 @@ std::span<const AttachmentInStep<2>> Box2dAttachments::begin(
     if (link->b != nullptr) {
       in_step.b = index_of(link->b, bodies);
     } else if (link->rigid != nullptr) {
-      in_step.rigid = number_of(*link->rigid);
-      in_step.frame = frame_of(*link->rigid);
+      const RigidInStep rigid = in_step_of(*link->rigid);
+      in_step.rigid = rigid.number;
+      in_step.frame = frame_of(rigid.pose);
     }
   }
   return to_solve_;
@@ -276,7 +279,11 @@ void Box2dAttachments::solve(std::span<const std::unique_ptr<Box2dBody>> bodies,
   rigid_bodies_.clear();
   attachments_.clear();
   for (const AttachmentInStep<2>& in_step : begin(
-           bodies, [&](b2Body& rigid) { return number_of(rigid, step); }, step))
+           bodies,
+           [&](b2Body& rigid) {
+             return RigidInStep{number_of(rigid, step), rigid.GetTransform()};
+           },
+           step))
     attachments_.add(in_step);
   if (attachments_.empty()) return;
   in_step_.resize(bodies.size());

@@ -58,10 +58,14 @@ class Box2dAttachments {
   void forget(const Box2dBody& body);
   bool holds(const Box2dBody& body) const;
 
-  /// Begins a step, after the solver of bodies. @param number_of  the number that the caller gives a rigid body
+  struct RigidInStep {
+    std::uint32_t number;  ///< that the caller gives it
+    b2Transform pose;      ///< at the step's begin
+  };
+  /// Begins a step, after the solver of bodies. @param in_step_of  of a rigid body
   /// @return  the attachments to be solved, with soft bodies by their indices; call end() afterwards
   std::span<const AttachmentInStep<2>> begin(std::span<const std::unique_ptr<Box2dBody>> bodies,
-                                             const std::function<std::uint32_t(b2Body&)>& number_of,
+                                             const std::function<RigidInStep(b2Body&)>& in_step_of,
                                              float step);
   /// Ends attachments that had to carry too much.
   void end();

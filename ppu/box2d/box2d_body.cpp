@@ -6,6 +6,17 @@
 
 namespace softcell::ppu {
 
+// Box2D 2.4 has no function that returns the forces which a program has applied. An explicit instantiation may name private members
+// ([temp.spec] in the C++ standard), and the friends that it defines return them. They are found by their arguments.
+template <b2Vec2 b2Body::*Force, float b2Body::*Torque>
+struct AppliedForces {
+  friend b2Vec2 applied_force(const b2Body& body) { return body.*Force; }
+  friend float applied_torque(const b2Body& body) { return body.*Torque; }
+};
+template struct AppliedForces<&b2Body::m_force, &b2Body::m_torque>;
+b2Vec2 applied_force(const b2Body& body);  // N
+float applied_torque(const b2Body& body);  // N m
+
 using Eigen::Vector2f;
 
 bool has_body(const b2World& world, const b2Body* body) {
@@ -20,17 +31,18 @@ float inverse_mass_of(const b2Body& body) {
   return body.GetMass() > 0 ? 1 / body.GetMass() : 0;
 }
 
-b2Vec2 fall_of(const b2Body& body, const b2Vec2& gravity, float step) {
-  const bool falls = body.GetType() == b2_dynamicBody && body.GetMass() > 0;
-  return falls ? step * body.GetGravityScale() * gravity : b2Vec2_zero;
-}
-
 float inverse_inertia_of(const b2Body& body) {
   SC_ASSERT(body.GetType() == b2_dynamicBody, "the inertia of a body of type {}",
             static_cast<int>(body.GetType()));
   // Box2D gives the inertia about the body's origin.
   const float inertia = body.GetInertia() - body.GetMass() * body.GetLocalCenter().LengthSquared();
   return !body.IsFixedRotation() && inertia > 0 ? 1 / inertia : 0;
+}
+
+VelocityGain velocity_gain(const b2Body& body, const b2Vec2& gravity, float step) {
+  if (body.GetType() != b2_dynamicBody || body.GetMass() <= 0) return {};
+  return {step * body.GetGravityScale() * gravity + step * inverse_mass_of(body) * applied_force(body),
+          step * inverse_inertia_of(body) * applied_torque(body)};
 }
 
 Box2dBody::Box2dBody(b2World& world, SoftBody<2> soft)
@@ -74,7 +86,7 @@ void Box2dBody::end_step(float /*step*/) {
 }
 
 void Box2dBody::count_stillness(float step, float speed) {
-  stillness_.count(step, soft_.mean_speed(), speed);
+  stillness_.count(step, real_speed_.value_or(soft_.mean_speed()), speed);
 }
 
 void Box2dBody::fall_asleep() {

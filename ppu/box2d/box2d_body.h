@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 
 #include "ppu/bodies/stillness.h"
@@ -57,6 +58,8 @@ class Box2dBody {
 
   /// Adds a step to the time for which the body was slower than `speed` (m/s).
   void count_stillness(float step, float speed);
+  /// @param speed  m/s: with which the particles of a crushed body have really moved in this step; none of any other body
+  void set_real_speed(const std::optional<float>& speed) { real_speed_ = speed; }
   float still_for() const { return stillness_.seconds(); }  ///< seconds
   /// Whether it was too fast to fall asleep at the end of the last step.
   bool moves() const { return stillness_.moves(); }
@@ -81,6 +84,7 @@ class Box2dBody {
  private:
   std::uint32_t seen_revision_ = 0, seen_resets_ = 0;
   Stillness stillness_;
+  std::optional<float> real_speed_;  // m/s, in the last step; none: as the particles' velocities say
   b2Vec2 gravity_asleep_{0, 0};
 };
 
@@ -88,8 +92,15 @@ class Box2dBody {
 bool has_body(const b2World& world, const b2Body* body);
 /// 1/kg; 0: it has no fixture with a density, so that impulses do not move it. @pre it is dynamic
 float inverse_mass_of(const b2Body& body);
-/// m/s: the velocity that gravity (m/s^2) adds in a step of `step` seconds. Bodies without mass do not fall in Box2D.
-b2Vec2 fall_of(const b2Body& body, const b2Vec2& gravity, float step);
+/// What forces add to a rigid body's velocities in a step.
+struct VelocityGain {
+  b2Vec2 linear{0, 0};  ///< m/s
+  float angular = 0;    ///< radians/s
+};
+
+/// What gravity (m/s^2) and the forces and torques that the program has applied to a body will add in a step of `step` seconds, as Box2D
+/// integrates them. Nothing for bodies that are not dynamic, or have no mass.
+VelocityGain velocity_gain(const b2Body& body, const b2Vec2& gravity, float step);
 /// 1/(kg m^2), about its centre of mass; 0: it cannot rotate. @pre it is dynamic
 float inverse_inertia_of(const b2Body& body);
 

@@ -11,6 +11,7 @@
 #include <cmath>
 
 #include "ppu/box2d/box2d_body.h"
+#include "ppu/numbers/hash_of_numbers.h"
 #include "softcell/base/assert.h"
 
 namespace softcell::ppu {
@@ -56,18 +57,18 @@ float depth_behind(const b2PolygonShape& polygon, int face) {
   return -least;
 }
 
-/// The hash FNV-1a, fed with words of 32 bits.
+/// The hash of how a shape looks.
 class LookHash {
  public:
-  void add(std::uint32_t number) { hash_ = (hash_ ^ number) * 0x100000001b3u; }
+  void add(std::uint32_t number) { hash_.add(number); }
   void add(float number) { add(std::bit_cast<std::uint32_t>(number)); }
   void add(std::span<const b2Vec2> points) {
     for (const b2Vec2& point : points) add(point.x), add(point.y);
   }
-  std::uint64_t value() const { return hash_; }
+  std::uint64_t value() const { return hash_.value(); }
 
  private:
-  std::uint64_t hash_ = 0xcbf29ce484222325u;
+  NumberHash hash_;
 };
 
 void add_shape(const b2Shape& shape, LookHash& hash) {
@@ -108,6 +109,29 @@ std::uint64_t look_of(const b2Body& body) {
 
 bool is_under_way(const b2Body& body) {
   return body.IsAwake() && (body.GetLinearVelocity().LengthSquared() > 0 || body.GetAngularVelocity() != 0);
+}
+
+/// Whether nothing moves a body but the program by its place. Joints on it see where it is.
+bool may_be_moved_by_hand(const b2Body& body) {
+  return body.GetType() != b2_dynamicBody && body.GetLinearVelocity().LengthSquared() == 0 &&
+         body.GetAngularVelocity() == 0 && body.GetJointList() == nullptr;
+}
+
+Pose as_pose(const b2Transform& pose) {
+  Pose made;
+  made.position = lifted(pose.p);
+  made.rotation.topLeftCorner<2, 2>() << pose.q.c, -pose.q.s, pose.q.s, pose.q.c;
+  return made;
+}
+
+/// Metres, along the longer axis of the box around all its fixtures.
+float size_of(const b2Body& body) {
+  b2AABB all{b2Vec2(b2_maxFloat, b2_maxFloat), b2Vec2(-b2_maxFloat, -b2_maxFloat)};
+  bool is_empty = true;
+  for (const b2Fixture* fixture = body.GetFixtureList(); fixture != nullptr; fixture = fixture->GetNext())
+    for (int child = 0; child < fixture->GetShape()->GetChildCount(); ++child, is_empty = false)
+      all.Combine(fixture->GetAABB(child));
+  return is_empty ? 0 : std::max(all.GetExtents().x, all.GetExtents().y) * 2;
 }
 
 }  // namespace
@@ -153,22 +177,64 @@ void Box2dObstacles::begin(b2World& world, float step, float layer) {
   moving_.clear();
   for (b2Body* body = world.GetBodyList(); body != nullptr; body = body->GetNext())
     if (is_under_way(*body)) moving_.push_back(body);
+  find_moved_by_hand();
 }
 
-/// The velocity without contacts: Box2D adds gravity later in its step.
-b2Vec2 Box2dObstacles::velocity_of(const b2Body& body) const {
-  const b2Vec2 velocity = body.GetLinearVelocity();
-  return body.IsAwake() ? velocity + fall_of(body, world_->GetGravity(), step_) : velocity;
+/// Moved bodies lie where the program has put them in Box2D's tree, too.
+void Box2dObstacles::find_moved_by_hand() {
+  moved_.clear();
+  if (wanted_ != Fixtures::kSolid) return;
+  for (b2Body* body = world_->GetBodyList(); body != nullptr; body = body->GetNext()) {
+    KnownBody& known = known_bodies_.at(body);
+    if (!may_be_moved_by_hand(*body)) {
+      known.pose.reset();
+      continue;
+    }
+    const Pose pose = as_pose(body->GetTransform());
+    if (known.pose && !(*known.pose == pose)) {
+      if (const auto motion = moved_by_hand(*known.pose, pose, size_of(*body), step_)) {
+        moved_.push_back({body, *motion});
+        moving_.push_back(body);
+      }
+    }
+    known.pose = pose;
+  }
+}
+
+const MovedByHand* Box2dObstacles::moved_by_hand_of(const b2Body& body) const {
+  const auto found = std::ranges::find(moved_, &body, &Moved::body);
+  return found == moved_.end() ? nullptr : &found->motion;
+}
+
+b2Transform Box2dObstacles::pose_of(const b2Body& body) const {
+  const MovedByHand* const moved = moved_by_hand_of(body);
+  if (moved == nullptr) return body.GetTransform();
+  b2Transform pose;
+  pose.p = {moved->from.position.x(), moved->from.position.y()};
+  pose.q.c = moved->from.rotation(0, 0);
+  pose.q.s = moved->from.rotation(1, 0);
+  return pose;
+}
+
+/// What Box2D will add to a body's velocities later in its step, where it touches nothing.
+VelocityGain Box2dObstacles::gain_of(const b2Body& body) const {
+  return body.IsAwake() ? velocity_gain(body, world_->GetGravity(), step_) : VelocityGain{};
 }
 
 /// Box2D has a box around the fixture's last place; for a body that moves, this also covers its motion.
 b2AABB Box2dObstacles::box_of_step(const b2Fixture& fixture, int child) const {
   b2AABB box = fixture.GetAABB(child);
   const b2Body& body = *fixture.GetBody();
-  if (!is_under_way(body)) return box;
-  const b2Vec2 way = step_ * velocity_of(body), centre = body.GetWorldCenter();
+  const MovedByHand* const moved = moved_by_hand_of(body);
+  if (moved == nullptr && !is_under_way(body)) return box;
+  const VelocityGain gain = gain_of(body);
+  // It has come from there already.
+  const b2Vec2 way = moved != nullptr ? -step_ * b2Vec2(moved->velocity.x(), moved->velocity.y())
+                                      : step_ * (body.GetLinearVelocity() + gain.linear);
+  const float spin = moved != nullptr ? moved->spin.z() : body.GetAngularVelocity() + gain.angular;
+  const b2Vec2 centre = body.GetWorldCenter();
   const b2Vec2 arm = b2Max(b2Abs(box.lowerBound - centre), b2Abs(box.upperBound - centre));
-  const float turn = step_ * std::abs(body.GetAngularVelocity()) * arm.Length();
+  const float turn = step_ * std::abs(spin) * arm.Length();
   box.lowerBound += b2Min(way, b2Vec2_zero) - b2Vec2(turn, turn);
   box.upperBound += b2Max(way, b2Vec2_zero) + b2Vec2(turn, turn);
   return box;
@@ -235,7 +301,7 @@ void Box2dObstacles::add_near(const Bounds<3>& box, const Vector2f& middle, cons
 int Box2dObstacles::face_before(const Found& found, const Bounds<3>& box, const Vector2f& middle) const {
   const b2Fixture& fixture = *found.there;
   if (fixture.GetType() != b2Shape::e_polygon || wanted_ == Fixtures::kSensors) return kWhole;
-  const b2Transform& pose = fixture.GetBody()->GetTransform();
+  const b2Transform pose = pose_of(*fixture.GetBody());
   const b2Vec2 at = b2MulT(pose, b2Vec2(middle.x(), middle.y()));
   const auto& polygon = static_cast<const b2PolygonShape&>(*fixture.GetShape());
   for (int face = 0; face < polygon.m_count; ++face) {
@@ -260,8 +326,14 @@ std::uint32_t Box2dObstacles::rigid_of(b2Body& body) {
   ContactRigid rigid;
   rigid.number = number(body);
   rigid.centre = lifted(body.GetWorldCenter());
-  rigid.velocity = lifted(velocity_of(body));
-  rigid.spin = {0, 0, body.GetAngularVelocity()};
+  const VelocityGain gain = gain_of(body);
+  rigid.velocity = lifted(body.GetLinearVelocity() + gain.linear);
+  rigid.spin = {0, 0, body.GetAngularVelocity() + gain.angular};
+  if (const MovedByHand* const moved = moved_by_hand_of(body)) {
+    rigid.centre = moved->from.position;
+    rigid.velocity = moved->velocity;
+    rigid.spin = moved->spin;
+  }
   rigid.friction = 1;  // each fixture has its own
   for (const b2Fixture* fixture = body.GetFixtureList(); fixture != nullptr; fixture = fixture->GetNext())
     rigid.restitution = std::max(rigid.restitution, fixture->GetRestitution());
@@ -322,7 +394,7 @@ std::uint32_t Box2dObstacles::obstacle_of_chain(std::span<const Found> edges) {
 
 /// Sets everything but the shape.
 Obstacle Box2dObstacles::placed_with(b2Fixture& fixture) {
-  const b2Transform& pose = fixture.GetBody()->GetTransform();
+  const b2Transform pose = pose_of(*fixture.GetBody());
   Obstacle obstacle;
   obstacle.rigid = rigid_of(*fixture.GetBody());
   obstacle.friction = std::sqrt(fixture.GetFriction());

@@ -8,10 +8,12 @@
 #include <array>
 #include <cstdint>
 #include <deque>
+#include <optional>
 #include <span>
 #include <unordered_map>
 #include <vector>
 
+#include "ppu/surfaces/moved_by_hand.h"
 #include "ppu/surfaces/obstacle.h"
 #include "softcell/soft_bodies/contact.h"
 
@@ -40,6 +42,8 @@ class Box2dObstacles {
   std::span<b2Body* const> bodies() const { return bodies_; }
   /// The index of a body in rigids(); adds it if it is missing. @pre begin() was called
   std::uint32_t rigid_of(b2Body& body);
+  /// Where a body is when the step begins: where it was before, if the program has moved it by its place since.
+  b2Transform pose_of(const b2Body& body) const;
   /// The fixture of an obstacle.
   b2Fixture& fixture(std::uint32_t obstacle) const { return *fixtures_[obstacle]; }
 
@@ -86,11 +90,19 @@ class Box2dObstacles {
     std::uint32_t number;
     std::uint64_t looked = 0;  // the number of the step that found `look`; 0: none has
     std::uint64_t look = 0;
+    std::optional<Pose> pose = {};  // in the last step, if nothing moves it but the program by its place
+  };
+  /// A body that the program has moved by its place since the last step.
+  struct Moved {
+    const b2Body* body;
+    MovedByHand motion;
   };
   class Collector;
 
   void number_bodies();
-  b2Vec2 velocity_of(const b2Body& body) const;
+  void find_moved_by_hand();
+  const MovedByHand* moved_by_hand_of(const b2Body& body) const;
+  VelocityGain gain_of(const b2Body& body) const;
   b2AABB box_of_step(const b2Fixture& fixture, int child) const;
   int face_before(const Found& found, const Bounds<3>& box, const Eigen::Vector2f& middle) const;
   std::uint32_t obstacle_of(const Found& found, int face);
@@ -116,6 +128,7 @@ class Box2dObstacles {
   std::uint32_t next_number_ = 0;
   std::vector<b2Body*> unknown_;
   std::vector<b2Body*> moving_;  // in this substep
+  std::vector<Moved> moved_;
   std::vector<Found> found_;
   std::vector<Known> known_;
   std::deque<Shape> shapes_;  // obstacles point into them

@@ -2,6 +2,9 @@
 
 #include <box2d/b2_body.h>
 #include <box2d/b2_distance_joint.h>
+#include <box2d/b2_friction_joint.h>
+#include <box2d/b2_motor_joint.h>
+#include <box2d/b2_mouse_joint.h>
 #include <box2d/b2_prismatic_joint.h>
 #include <box2d/b2_pulley_joint.h>
 #include <box2d/b2_revolute_joint.h>
@@ -9,11 +12,14 @@
 #include <box2d/b2_wheel_joint.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "softcell/base/assert.h"
 
 namespace softcell::ppu {
 namespace {
+
+const b2Vec2 kAxes[] = {{1, 0}, {0, 1}};
 
 /// Writes the rows of one joint: its second body against its first one.
 class Rows {
@@ -30,8 +36,11 @@ class Rows {
 
   /// Keeps the two anchors together.
   void pin() {
-    for (const b2Vec2 axis : {b2Vec2(1, 0), b2Vec2(0, 1)})
-      add({.of_a = share(axis, arm_a_, -1), .of_b = share(axis, arm_b_, 1)});
+    for (const b2Vec2& axis : kAxes) add(between_anchors(axis));
+  }
+  /// The motion of the second anchor against the first one.
+  JointRow between_anchors(const b2Vec2& axis) const {
+    return {.of_a = share(axis, arm_a_, -1), .of_b = share(axis, arm_b_, 1)};
   }
   /// Moves the second anchor relative to the first body.
   JointRow along(const b2Vec2& axis) const {
@@ -43,12 +52,14 @@ class Rows {
     row.a = index_a_, row.b = index_b_;
     rows_.push_back(row);
   }
+  void limit(JointRow& row, float force) const { row.least = -step_ * force, row.most = step_ * force; }
   void add_motor(JointRow row, float speed, float force) {
     row.target = speed;
-    row.least = -step_ * force, row.most = step_ * force;
+    limit(row, force);
     add(row);
   }
-  /// Box2D's soft constraint: a spring with a stiffness and a damping, at a position error.
+  float step() const { return step_; }
+  /// Box2D's soft constraint: a spring with a stiffness and a damping, at a position error. Limits of the row stay.
   void add_spring(JointRow row, float error, float stiffness, float damping) {
     const float gives_way = step_ * (damping + step_ * stiffness);
     if (!(gives_way > 0)) return;
@@ -132,6 +143,43 @@ void add_rows(b2DistanceJoint& joint, Rows& rows) {
   rows.add_limits(along, length - joint.GetMinLength(), joint.GetMaxLength() - length);
 }
 
+/// The greatest force along an axis of a joint that limits the length of its force. If the joint pulls with all of it, towards the place
+/// that it aims at, the force across is as small.
+/// @param wanted  N: with which the joint would pull if it could
+float most_along(const b2Vec2& axis, const b2Vec2& wanted, float most) {
+  const float length = wanted.Length();
+  return length > most ? most * std::abs(b2Dot(axis, wanted)) / length : most;
+}
+
+/// A spring to the mouse, no stronger than the joint's force.
+void add_rows(b2MouseJoint& joint, Rows& rows) {
+  const b2Vec2 error = joint.GetAnchorB() - joint.GetTarget(), wanted = joint.GetStiffness() * error;
+  for (const b2Vec2& axis : kAxes) {
+    JointRow row = rows.between_anchors(axis);
+    row.of_a = {};
+    rows.limit(row, most_along(axis, wanted, joint.GetMaxForce()));
+    rows.add_spring(row, b2Dot(axis, error), joint.GetStiffness(), joint.GetDamping());
+  }
+}
+
+/// Aims at a pose of the second body in the frame of the first one.
+void add_rows(b2MotorJoint& joint, Rows& rows) {
+  const b2Body &a = *joint.GetBodyA(), &b = *joint.GetBodyB();
+  const b2Vec2 error = b.GetPosition() - a.GetWorldPoint(joint.GetLinearOffset());
+  const float per_step = joint.GetCorrectionFactor() / rows.step();
+  const b2Vec2 wanted = b.GetMass() * per_step / rows.step() * error;
+  for (const b2Vec2& axis : kAxes)
+    rows.add_motor(rows.along(axis), -per_step * b2Dot(axis, error),
+                   most_along(axis, wanted, joint.GetMaxForce()));
+  const float turned = b.GetAngle() - a.GetAngle() - joint.GetAngularOffset();
+  rows.add_motor(Rows::turning(), -per_step * turned, joint.GetMaxTorque());
+}
+
+void add_rows(b2FrictionJoint& joint, Rows& rows) {
+  for (const b2Vec2& axis : kAxes) rows.add_motor(rows.between_anchors(axis), 0, joint.GetMaxForce());
+  rows.add_motor(Rows::turning(), 0, joint.GetMaxTorque());
+}
+
 /// Ropes from two anchors over two pulleys: one gets longer by as much as the other gets shorter.
 void add_rows(b2PulleyJoint& joint, Rows& rows) {
   b2Vec2 rope_a = joint.GetAnchorA() - joint.GetGroundAnchorA();
@@ -159,6 +207,12 @@ void add_joint_rows(b2Joint& joint, std::uint32_t a, std::uint32_t b, float step
       return add_rows(static_cast<b2WeldJoint&>(joint), made);
     case e_distanceJoint:
       return add_rows(static_cast<b2DistanceJoint&>(joint), made);
+    case e_mouseJoint:
+      return add_rows(static_cast<b2MouseJoint&>(joint), made);
+    case e_motorJoint:
+      return add_rows(static_cast<b2MotorJoint&>(joint), made);
+    case e_frictionJoint:
+      return add_rows(static_cast<b2FrictionJoint&>(joint), made);
     case e_pulleyJoint:
       return add_rows(static_cast<b2PulleyJoint&>(joint), made);
     default:

@@ -10,8 +10,7 @@
 
 namespace softcell::ppu {
 
-/// Appends the rows with which Box2D solves velocities, for revolute, prismatic, wheel, weld, distance and pulley joints. For other joints
-/// none: a mouse joint gives way, and the effect of gear, friction and motor joints is left to Box2D.
+/// Appends the rows with which Box2D solves velocities, for all joints but gears: their effect is left to Box2D.
 /// @param a, b  indices of the ContactRigid of the joint's bodies  @param step  seconds
 void add_joint_rows(b2Joint& joint, std::uint32_t a, std::uint32_t b, float step,
                     std::vector<JointRow>& rows);

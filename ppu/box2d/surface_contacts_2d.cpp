@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "ppu/contacts/overlap.h"
 #include "ppu/contacts/piece_sides.h"
@@ -75,13 +76,13 @@ void SurfaceContacts2d::lift(const Box2dBody& body, Kept& kept, float step) {
 
 /// Attached bodies do not sleep: wakes the rigid ones.
 void SurfaceContacts2d::begin_attachments(Bodies bodies, Box2dAttachments& attachments, float step) {
-  const auto number_of = [&](b2Body& rigid) {
+  const auto in_step_of = [&](b2Body& rigid) {
     if (rigid.GetType() == b2_dynamicBody) rigid.SetAwake(true);
-    return obstacles_.rigid_of(rigid);
+    return Box2dAttachments::RigidInStep{obstacles_.rigid_of(rigid), obstacles_.pose_of(rigid)};
   };
   attachments_.clear();
   attached_rigids_.clear();
-  for (const AttachmentInStep<2>& attachment : attachments.begin(bodies, number_of, step)) {
+  for (const AttachmentInStep<2>& attachment : attachments.begin(bodies, in_step_of, step)) {
     attachments_.add(attachment);
     if (attachment.rigid != AttachmentInStep<2>::kNone) attached_rigids_.push_back(attachment.rigid);
   }
@@ -216,11 +217,14 @@ void SurfaceContacts2d::move(Bodies bodies, float step) {
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     if (in_stage_[i].asleep) continue;
     SoftBody<2>& soft = bodies[i]->soft();
+    MeanSpeed real;
     for (std::size_t p = 0; p < soft.positions().size(); ++p) {
       const Vector2f velocity = FlatLayer::lower(stage_.velocities(i), p);
-      const Vector2f push = FlatLayer::lower(stage_.pushes(i), p);
-      soft.set_particle(p, soft.position(p) + step * (velocity + push), velocity);
+      const Vector2f moved = velocity + FlatLayer::lower(stage_.pushes(i), p);
+      soft.set_particle(p, soft.position(p) + step * moved, velocity);
+      if (stage_.is_crushed(i)) real.add(soft.model().masses()[p], moved);
     }
+    bodies[i]->set_real_speed(stage_.is_crushed(i) ? std::optional(real.value()) : std::nullopt);
     kept_.at(bodies[i].get()).place_of_sides = soft.position(0);
   }
 }

@@ -186,6 +186,13 @@ Vector3f velocity_in(float step, const btRigidBody& body) {
   return velocity + step * body.getInvMass() * to_eigen(body.getTotalForce());
 }
 
+/// The spin without contacts: Bullet adds torques later in its step.
+Vector3f spin_in(float step, const btRigidBody& body) {
+  const Vector3f spin = to_eigen(body.getAngularVelocity());
+  if (body.isStaticOrKinematicObject()) return spin;
+  return spin + step * (to_eigen(body.getInvInertiaTensorWorld()) * to_eigen(body.getTotalTorque()));
+}
+
 /// As in Bullet's own solver, the factors multiply what impulses do along the world's axes, and about them.
 void set_mobility(const btRigidBody& body, ContactRigid& rigid) {
   const Vector3f linear = to_eigen(body.getLinearFactor()), angular = to_eigen(body.getAngularFactor());
@@ -205,30 +212,29 @@ btVector3 where_it_moves(const btVector3& change, const btVector3& factor) {
           factor.z() == 0 ? 0 : change.z()};
 }
 
-/// An object's motion in a substep, metres.
-struct Way {
-  Vector3f along = Vector3f::Zero();
-  float turn = 0;  ///< how far its spin moves any point at most
-};
-
-Way way_of(const btCollisionObject& object, float step) {
+/// Whether nothing moves an object but the program by its place. Joints on it see where it is.
+bool may_be_moved_by_hand(const btCollisionObject& object) {
   const btRigidBody* const body = btRigidBody::upcast(&object);
-  if (body == nullptr || !is_under_way(object)) return {};
+  if (body == nullptr) return !object.isKinematicObject();
+  return body->isStaticObject() && !body->isKinematicObject() && body->getNumConstraintRefs() == 0;
+}
+
+Pose as_pose(const btTransform& pose) { return {to_eigen(pose.getOrigin()), to_eigen(pose.getBasis())}; }
+
+/// Metres, along its longest axis.
+float size_of(const btCollisionShape& shape) {
+  btVector3 low, high;
+  shape.getAabb(btTransform::getIdentity(), low, high);
+  return to_eigen(high - low).maxCoeff();
+}
+
+/// How far any point of a shape is from its origin at most, metres.
+float reach_of(const btCollisionShape& shape) {
   btVector3 centre;
   btScalar radius = 0;
-  body->getCollisionShape()->getBoundingSphere(centre, radius);
-  return {step * velocity_in(step, *body),
-          step * body->getAngularVelocity().length() * (centre.length() + radius)};
+  shape.getBoundingSphere(centre, radius);
+  return centre.length() + radius;
 }
-
-/// The box around a box with that motion.
-Bounds<3> ahead(const Bounds<3>& box, const Way& way) {
-  return {box.low + way.along.cwiseMin(0.0f) - Vector3f::Constant(way.turn),
-          box.high + way.along.cwiseMax(0.0f) + Vector3f::Constant(way.turn)};
-}
-
-/// The box around everything that enters a box with that motion.
-Bounds<3> behind(const Bounds<3>& box, const Way& way) { return ahead(box, {-way.along, way.turn}); }
 
 /// Collects the objects that the broad phase finds.
 struct Collector final : btBroadphaseAabbCallback {
@@ -253,6 +259,62 @@ std::vector<T>& next_list(std::vector<std::vector<T>>& lists, std::size_t& used)
 
 }  // namespace
 
+BulletObstacles::Way BulletObstacles::way_of(const btCollisionObject& object) const {
+  if (const MovedByHand* const moved = moved_by_hand_of(object))
+    return {step_ * moved->velocity, step_ * moved->spin.norm() * reach_of(*object.getCollisionShape())};
+  const btRigidBody* const body = btRigidBody::upcast(&object);
+  if (body == nullptr || !is_under_way(object)) return {};
+  return {step_ * velocity_in(step_, *body),
+          step_ * spin_in(step_, *body).norm() * reach_of(*body->getCollisionShape())};
+}
+
+/// The box around a box with that motion.
+Bounds<3> BulletObstacles::ahead(const Bounds<3>& box, const Way& way) {
+  return {box.low + way.along.cwiseMin(0.0f) - Vector3f::Constant(way.turn),
+          box.high + way.along.cwiseMax(0.0f) + Vector3f::Constant(way.turn)};
+}
+
+/// The box around everything that enters a box with that motion.
+Bounds<3> BulletObstacles::behind(const Bounds<3>& box, const Way& way) {
+  return ahead(box, {-way.along, way.turn});
+}
+
+const MovedByHand* BulletObstacles::moved_by_hand_of(const btCollisionObject& object) const {
+  const auto found = std::ranges::find(moved_, &object, &Moved::object);
+  return found == moved_.end() ? nullptr : &found->motion;
+}
+
+btTransform BulletObstacles::pose_of(const btCollisionObject& object) const {
+  const MovedByHand* const moved = moved_by_hand_of(object);
+  if (moved == nullptr) return object.getWorldTransform();
+  const Matrix3f& m = moved->from.rotation;
+  const btMatrix3x3 rotation(m(0, 0), m(0, 1), m(0, 2), m(1, 0), m(1, 1), m(1, 2), m(2, 0), m(2, 1), m(2, 2));
+  return btTransform(rotation, to_bullet(moved->from.position));
+}
+
+/// Objects change their places in the world's list when one is removed: they are then seen for the first time again.
+void BulletObstacles::find_moved_by_hand() {
+  moved_.clear();
+  if (role_ != Objects::kSolid) return;
+  const btCollisionObjectArray& objects = world_->getCollisionObjectArray();
+  seen_.resize(static_cast<std::size_t>(objects.size()));
+  for (int i = 0; i < objects.size(); ++i) {
+    const btCollisionObject& object = *objects[i];
+    Seen& seen = seen_[static_cast<std::size_t>(i)];
+    if (!may_be_moved_by_hand(object)) {
+      seen.object = nullptr;
+      continue;
+    }
+    const Pose pose = as_pose(object.getWorldTransform());
+    const int id = object.getBroadphaseHandle()->m_uniqueId;
+    if (seen.object == &object && seen.id == id && !(seen.pose == pose)) {
+      if (const auto motion = moved_by_hand(seen.pose, pose, size_of(*object.getCollisionShape()), step_))
+        moved_.push_back({&object, *motion});
+    }
+    seen = {&object, id, pose};
+  }
+}
+
 void BulletObstacles::begin(const btDiscreteDynamicsWorld& world, float step) {
   SC_ASSERT(step > 0, "a substep of {} s", step);
   world_ = &world;
@@ -268,6 +330,8 @@ void BulletObstacles::begin(const btDiscreteDynamicsWorld& world, float step) {
   const btCollisionObjectArray& objects = world.getCollisionObjectArray();
   // The program moves trigger volumes, most of them without a velocity.
   const bool wants_triggers = role_ == Objects::kTriggers;
+  find_moved_by_hand();
+  for (const Moved& moved : moved_) find_leaving(*moved.object);
   for (int i = 0; i < objects.size(); ++i)
     if (is_under_way(*objects[i]) || (wants_triggers && !objects[i]->hasContactResponse()))
       find_leaving(*objects[i]);
@@ -276,8 +340,8 @@ void BulletObstacles::begin(const btDiscreteDynamicsWorld& world, float step) {
 void BulletObstacles::find_leaving(const btCollisionObject& object) {
   const btBroadphaseProxy* const proxy = object.getBroadphaseHandle();
   btVector3 low, high;
-  object.getCollisionShape()->getAabb(object.getWorldTransform(), low, high);
-  const Bounds<3> box = ahead({to_eigen(low), to_eigen(high)}, way_of(object, step_));
+  object.getCollisionShape()->getAabb(pose_of(object), low, high);
+  const Bounds<3> box = ahead({to_eigen(low), to_eigen(high)}, way_of(object));
   const bool is_known = (box.low.array() >= to_eigen(proxy->m_aabbMin).array()).all() &&
                         (box.high.array() <= to_eigen(proxy->m_aabbMax).array()).all();
   if (!is_known) leaving_.push_back({proxy, box});
@@ -304,7 +368,7 @@ void BulletObstacles::add_near(const Bounds<3>& box, int group, int mask,
   for (const btBroadphaseProxy* const proxy : found_) {
     auto& object = *static_cast<btCollisionObject*>(proxy->m_clientObject);
     if (object.hasContactResponse() == (role_ == Objects::kSolid))
-      add_object(object, behind(box, way_of(object, step_)), indices);
+      add_object(object, behind(box, way_of(object)), indices);
   }
 }
 
@@ -316,7 +380,7 @@ void BulletObstacles::add_object(btCollisionObject& object, const Bounds<3>& box
   // The triangles of a shape differ from box to box.
   if (!shape.isConcave() && !shape.isCompound())
     obstacle_of_[rigid] = static_cast<std::uint32_t>(obstacles_.size());
-  add_shape(shape, object.getWorldTransform(), rigid, 0, box, indices);
+  add_shape(shape, pose_of(object), rigid, 0, box, indices);
 }
 
 std::uint32_t BulletObstacles::rigid_of(btCollisionObject& object) {
@@ -334,9 +398,13 @@ std::uint32_t BulletObstacles::rigid_of(btCollisionObject& object) {
   rigid.centre = to_eigen(object.getWorldTransform().getOrigin());
   rigid.friction = object.getFriction();
   rigid.restitution = object.getRestitution();
-  if (const btRigidBody* const body = btRigidBody::upcast(&object)) {
+  if (const MovedByHand* const moved = moved_by_hand_of(object)) {
+    rigid.centre = moved->from.position;
+    rigid.velocity = moved->velocity;
+    rigid.spin = moved->spin;
+  } else if (const btRigidBody* const body = btRigidBody::upcast(&object)) {
     rigid.velocity = velocity_in(step_, *body);
-    rigid.spin = to_eigen(body->getAngularVelocity());
+    rigid.spin = spin_in(step_, *body);
     if (!body->isStaticOrKinematicObject()) set_mobility(*body, rigid);
   }
   rigids_.push_back(rigid);

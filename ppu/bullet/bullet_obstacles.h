@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "ppu/surfaces/moved_by_hand.h"
 #include "ppu/surfaces/obstacle.h"
 #include "softcell/soft_bodies/mesh.h"
 
@@ -39,6 +40,9 @@ class BulletObstacles {
   /// The index of an object's rigid body, near or not. @pre begin() was called
   std::uint32_t rigid_of(btCollisionObject& object);
 
+  /// Where an object is when the substep begins: where it was before, if the program has moved it by its place since.
+  btTransform pose_of(const btCollisionObject& object) const;
+
   std::span<const Obstacle> obstacles() const { return obstacles_; }
   std::span<ContactRigid> rigids() { return rigids_; }
   /// The objects that rigids() stand for. A collision object that is not a rigid body never moves.
@@ -49,6 +53,11 @@ class BulletObstacles {
   void apply(const std::vector<bool>& at_rest);
 
  private:
+  /// An object's motion in a substep, metres.
+  struct Way {
+    Eigen::Vector3f along{0, 0, 0};
+    float turn = 0;  ///< how far its spin moves any point at most
+  };
   /// Faces and edges of a convex hull.
   struct Hull {
     std::vector<btVector3> points;  // of which the hull was made
@@ -56,12 +65,28 @@ class BulletObstacles {
     std::vector<ObstacleEdge> edges;
   };
   using Triangle = std::array<Eigen::Vector3f, 3>;
+  /// A static object, as it was in a substep.
+  struct Seen {
+    const btCollisionObject* object = nullptr;
+    int id = 0;  ///< in the broad phase
+    Pose pose;
+  };
+  /// A static object that the program has moved since the last substep.
+  struct Moved {
+    const btCollisionObject* object;
+    MovedByHand motion;
+  };
   /// An object that leaves its box in the broad phase during the substep.
   struct Leaving {
     const btBroadphaseProxy* proxy;
     Bounds<3> box;  ///< around its motion
   };
 
+  void find_moved_by_hand();
+  const MovedByHand* moved_by_hand_of(const btCollisionObject& object) const;
+  Way way_of(const btCollisionObject& object) const;
+  static Bounds<3> ahead(const Bounds<3>& box, const Way& way);
+  static Bounds<3> behind(const Bounds<3>& box, const Way& way);
   void find_leaving(const btCollisionObject& object);
   void add_object(btCollisionObject& object, const Bounds<3>& box, std::vector<std::uint32_t>& indices);
   /// @param part  the number of the shape, which no other shape of the rigid body has
@@ -88,6 +113,8 @@ class BulletObstacles {
   std::vector<std::vector<Triangle>> triangles_;
   std::size_t edges_used_ = 0, triangles_used_ = 0;
   std::vector<Leaving> leaving_;
+  std::vector<Seen> seen_;  // for each object of the world; of those that may not be moved by hand, nothing
+  std::vector<Moved> moved_;
   std::vector<const btBroadphaseProxy*> found_;
   std::vector<btVector3> points_;
 };

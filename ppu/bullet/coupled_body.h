@@ -107,7 +107,7 @@ class CoupledBody {
 
   void count_stillness(float step, const SleepSettings& settings) {
     SC_ASSERT(!soft_.asleep(), "a body that has been still for {} s sleeps", stillness_.seconds());
-    stillness_.count(step, soft_.mean_speed(), settings.speed);
+    stillness_.count(step, real_speed_.value_or(soft_.mean_speed()), settings.speed);
   }
 
   void fall_asleep_now() {
@@ -122,6 +122,7 @@ class CoupledBody {
   SoftBody<3> soft_;
   CollisionFilter filter_;
   Stillness stillness_;
+  std::optional<float> real_speed_;  // m/s, in the last substep; none: as the particles' velocities say
 
  private:
   std::uint32_t seen_revision_ = 0, seen_resets_ = 0;

@@ -15,11 +15,10 @@ namespace {
 
 constexpr float kMovesFrom = 0.05f;  // m/s and rad/s, of kinematic bodies
 
-/// The frame of a rigid body.
-AttachmentFrame<3> frame_of(const btRigidBody& rigid) {
+AttachmentFrame<3> frame_of(const btTransform& pose) {
   AttachmentFrame<3> frame;
-  frame.position = frame.end_position = to_eigen(rigid.getWorldTransform().getOrigin());
-  frame.rotation = frame.end_rotation = to_eigen(rigid.getWorldTransform().getBasis());
+  frame.position = frame.end_position = to_eigen(pose.getOrigin());
+  frame.rotation = frame.end_rotation = to_eigen(pose.getBasis());
   return frame;
 }
 
@@ -60,7 +59,7 @@ AttachmentId SurfaceAttachments::add(SurfaceBody& body, const Patch<3>& patch, b
         world_.getCollisionObjectArray().findLinearSearch(rigid) == world_.getCollisionObjectArray().size())
       throw std::invalid_argument("the rigid body of an attachment is not in this world");
     number = rigid->getBroadphaseHandle()->m_uniqueId;
-    frame = frame_of(*rigid);
+    frame = frame_of(rigid->getWorldTransform());
     if (settings.kind == AttachmentKind::kRope && !full.point) full.point = frame.position;
   } else {
     frame = frame_in_world(full, particles);
@@ -127,7 +126,7 @@ std::optional<AttachmentEnds<3>> SurfaceAttachments::ends(AttachmentId id) const
   return link->rows.ends(
       link->a->soft().positions(),
       link->b != nullptr ? link->b->soft().positions() : std::span<const Eigen::Vector3f>(),
-      link->rigid != nullptr ? frame_of(*link->rigid) : link->hold.frame);
+      link->rigid != nullptr ? frame_of(link->rigid->getWorldTransform()) : link->hold.frame);
 }
 
 std::vector<EndedAttachment> SurfaceAttachments::take_ended() { return std::exchange(ended_, {}); }
@@ -258,7 +257,7 @@ void SurfaceAttachments::fill(Attachments<3>& attachments, std::span<SurfaceBody
       in_step.b = number_of(link->b);
     } else if (link->rigid != nullptr) {
       in_step.rigid = obstacles.rigid_of(*link->rigid);
-      in_step.frame = frame_of(*link->rigid);
+      in_step.frame = frame_of(obstacles.pose_of(*link->rigid));
     } else if (link->hold.moves) {
       Hold moved = link->hold;
       moved.advance(step);

@@ -72,6 +72,9 @@ class SurfaceBody final : public CoupledBody {
   }
   void fall_asleep_with_others() { fall_asleep_now(); }
 
+  /// @param speed  m/s: with which the particles of a crushed body have really moved in this substep; none of any other body
+  void set_real_speed(const std::optional<float>& speed) { real_speed_ = speed; }
+
   /// The sides of rigid triangles on which the body is.
   KnownSides& sides() { return sides_; }
   const KnownSides& sides() const { return sides_; }

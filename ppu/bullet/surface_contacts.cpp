@@ -3,6 +3,7 @@
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
 #include <algorithm>
+#include <optional>
 
 #include "ppu/bullet/bullet_vector.h"
 #include "ppu/bullet/may_move.h"
@@ -153,8 +154,13 @@ void SurfaceContacts::move(std::span<SurfaceBody* const> bodies, float step) {
     if (in_stage_[i].asleep) continue;
     SoftBody<3>& soft = bodies[i]->soft();
     const auto velocities = stage_.velocities(i), pushes = stage_.pushes(i);
-    for (std::size_t p = 0; p < velocities.size(); ++p)
-      soft.set_particle(p, soft.position(p) + step * (velocities[p] + pushes[p]), velocities[p]);
+    MeanSpeed real;
+    for (std::size_t p = 0; p < velocities.size(); ++p) {
+      const Eigen::Vector3f velocity = velocities[p] + pushes[p];
+      soft.set_particle(p, soft.position(p) + step * velocity, velocities[p]);
+      if (stage_.is_crushed(i)) real.add(soft.model().masses()[p], velocity);
+    }
+    bodies[i]->set_real_speed(stage_.is_crushed(i) ? std::optional(real.value()) : std::nullopt);
   }
 }
 

@@ -317,6 +317,27 @@ void ContactStage::hold_pushes_of_crushed_bodies() {
   }
 }
 
+/// Cells that get their volume back in a slant push their lower corners one way and their upper ones the other. What the body lies on holds
+/// it against that by friction, too; a crushed body would crawl over level ground otherwise.
+void ContactStage::hold_pushes_by_friction(const Group& group, std::span<const ContactRigid> rigids) {
+  constexpr int kIterations = 3;
+  const ContactBody& body = bodies_[group.a];
+  for (int i = 0; i < kIterations; ++i)
+    for (std::size_t c = 0; c < group.contacts.size(); ++c) {
+      const SoftContact& contact = group.contacts[c];
+      if (rigids[contact.rigid].inverse_mass != 0) continue;
+      const Vector3f impulse = group.whole_impulse(c);
+      const float pressing = group.impulse(c);
+      const float left = contact.friction * pressing - (impulse - pressing * contact.normal).norm();
+      const Vector3f push = contact.a.of(body.pushes);
+      const Vector3f along = push - contact.normal.dot(push) * contact.normal;
+      const float speed = along.norm(), mobility = contact.a.mobility(body.inverse_masses);
+      if (left <= 0 || speed == 0) continue;
+      contact.a.add(bodies_[group.a].pushes, body.inverse_masses,
+                    -std::min(1 / mobility, left / speed) * along);
+    }
+}
+
 /// Points near each other move the same particles. The mobility of each point is therefore taken for its share of all their impulses.
 void ContactStage::find_presses(const Group& group, std::span<const ContactRigid> rigids) {
   const ContactBody& body = bodies_[group.a];
@@ -503,6 +524,8 @@ void ContactStage::step(std::span<const BodyInStage> bodies, std::span<const Obs
     else
       solve_here(rigids, step);
     take_back_lost_spin(step);
+    for (std::size_t i = pair_groups_; i < group_count_; ++i)
+      if (is_crushed_[groups_[i].a]) hold_pushes_by_friction(groups_[i], rigids);
   }
   release_supports();
   remember_who_presses(rigids);

@@ -84,6 +84,9 @@ class ContactStage {
   /// Velocities, m/s, that move the body's particles out of penetration, in that step only.
   std::span<const Eigen::Vector3f> pushes(std::size_t body) const { return bodies_[body].pushes; }
 
+  /// Whether some of its cells were crushed. What its velocities still crush, its pushes give back, so that they do not tell how it moves.
+  bool is_crushed(std::size_t body) const { return is_crushed_[body]; }
+
   /// Appends the contacts of the last step whose impulse is above 0, in the order of bodies, and then those of bounces and sharp edges.
   void append_contacts(std::vector<PressingContact>& contacts) const;
   /// Islands: sets of bodies that pressed on each other in the last step, directly or through other soft bodies. A body that presses on
@@ -152,6 +155,7 @@ class ContactStage {
     return group.heavy ? settings.heavy_iterations : settings.iterations;
   }
   void hold_pushes_of_crushed_bodies();
+  void hold_pushes_by_friction(const Group& group, std::span<const ContactRigid> rigids);
   void find_presses(const Group& group, std::span<const ContactRigid> rigids);
   void find_supports(std::span<ContactRigid> rigids, const RigidLinks& links, float step);
   void release_supports();

@@ -120,7 +120,7 @@ bool CrushedCells::hold(ContactBody& body, float step) {
   SC_ASSERT(step > 0, "a substep of {} s", step);
   cells_.clear();
   least_.clear();
-  count_ = inside_out_ = 0;
+  count_ = 0;
   const Lattice<3>& lattice = body.lattice();
   const float per_spacing = 1 / body.spacing();
   const auto edges_at_end = [&](const std::array<std::uint32_t, 8>& corners) {
@@ -142,7 +142,6 @@ bool CrushedCells::hold(ContactBody& body, float step) {
     least_.push_back(std::min(volume, kLeastVolume));
     if (volume >= kLeastVolume) continue;
     ++count_;
-    if (volume < 0) ++inside_out_;
     const float back = std::min(kShareBack * (kLeastVolume - volume), kMostBack);
     grow(body.pushes, body.spacing() / step, corners, edges, back, body);
   }

@@ -36,8 +36,6 @@ class CrushedCells {
 
   /// The number of cells that were crushed at the beginning of the substep of the last hold(), and would have been at its end.
   std::uint32_t count() const { return count_; }
-  /// How many of them are inside out.
-  std::uint32_t inside_out() const { return inside_out_; }
 
  private:
   void place_ends(const ContactBody& body, float step);
@@ -46,7 +44,7 @@ class CrushedCells {
   std::vector<Eigen::Array4f> ends_;  // of each particle
   std::vector<std::uint32_t> cells_;  // cells that would be crushed at the end
   std::vector<float> least_;          // for each of them: the volume that it shall have then
-  std::uint32_t count_ = 0, inside_out_ = 0;
+  std::uint32_t count_ = 0;
 };
 
 }  // namespace softcell::ppu

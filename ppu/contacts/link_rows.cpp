@@ -23,6 +23,16 @@ constexpr double kHeldByJoints = 1e-2;
 // Softness of joints among each other, likewise.
 constexpr double kJointGivesWay = 1e-5;
 
+// A row that gives way by more than this share of its own mobility is a spring.
+constexpr double kSpring = 0.1;
+
+/// Whether the joint has a force of its own, as a motor has, and the springs of some of Bullet's joints: the engine applies that force
+/// whatever has been applied before.
+bool has_force(const JointRow& joint) {
+  const auto is_force = [](float limit) { return limit != 0 && std::isfinite(limit); };
+  return is_force(joint.least) || is_force(joint.most);
+}
+
 Six velocity_of(const ContactRigid& rigid) {
   Six velocity;
   velocity << rigid.velocity.cast<double>(), rigid.spin.cast<double>();
@@ -104,8 +114,7 @@ void LinkRows::add(const JointRow& joint) {
   if (!(made.mobility > 0)) return;  // a rotation of bodies that do not rotate
   made.softness = double{joint.softness} + kJointGivesWay * made.mobility;
   made.target = double{joint.target};
-  const bool is_motor = joint.is_limited() && joint.least != 0 && joint.most != 0;
-  made.is_of_engine = is_motor || joint.is_watched;
+  made.is_of_engine = has_force(joint) || joint.softness > kSpring * made.mobility || joint.is_watched;
   if (!joint.is_limited() && !made.is_of_engine) {
     joints_.push_back(made);
     return;

@@ -37,7 +37,7 @@ class LinkRows {
   };
   /// One direction of a contact or a joint.
   struct Row {
-    bool is_of_engine = false;  ///< a motor, or watched by the program: the engine carries its load
+    bool is_of_engine = false;  ///< a motor, a spring, or watched by the program: the engine carries its load
     Side a, b;
     double outside = 0;   ///< m/s, contribution of bodies that are no members
     double mobility = 0;  ///< 1/kg

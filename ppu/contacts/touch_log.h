@@ -91,8 +91,10 @@ class TouchLog {
     std::vector<Event> events;
     for (auto entry = touches_.begin(); entry != touches_.end();) {
       Touch& touch = entry->second;
-      const bool goes_on = !has_stepped_ || touch.goes_on_ || sleeps(entry->first, touch.event);
-      if (touch.is_over_ || !goes_on) {
+      // A touch that is over may be of a body that is gone.
+      const bool goes_on =
+          !touch.is_over_ && (!has_stepped_ || touch.goes_on_ || sleeps(entry->first, touch.event));
+      if (!goes_on) {
         if (touch.is_old_) events.push_back(touch.end());
         entry = touches_.erase(entry);
         continue;

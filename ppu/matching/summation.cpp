@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <unordered_map>
 
+#include "ppu/numbers/hash_of_numbers.h"
 #include "softcell/base/assert.h"
 
 namespace softcell::ppu {
@@ -14,7 +15,7 @@ namespace {
 class UniqueLists {
  public:
   std::uint32_t number_of(std::span<const std::uint32_t> list) {
-    const std::uint64_t hash = hash_of(list);
+    const std::uint64_t hash = HashOfNumbers()(list);
     const auto [first, last] = by_hash_.equal_range(hash);
     for (auto known = first; known != last; ++known)
       if (std::ranges::equal(lists_[known->second], list)) return known->second;
@@ -27,13 +28,6 @@ class UniqueLists {
   Csr take() { return std::move(lists_); }
 
  private:
-  /// FNV-1a over the numbers.
-  static std::uint64_t hash_of(std::span<const std::uint32_t> list) {
-    std::uint64_t hash = 0xcbf29ce484222325u;
-    for (const std::uint32_t item : list) hash = (hash ^ item) * 0x100000001b3u;
-    return hash;
-  }
-
   Csr lists_;
   std::unordered_multimap<std::uint64_t, std::uint32_t> by_hash_;
 };

@@ -3,8 +3,10 @@
 #include <SDL.h>
 
 #include <memory>
+#include <optional>
 #include <stdexcept>
 
+#include "display_watch.h"
 #include "softcell/base/assert.h"
 #include "softcell/render/offscreen_context.h"
 
@@ -153,6 +155,7 @@ struct Window::State {
       window = open(settings, SDL_WINDOW_OPENGL);
       if (window == nullptr) refuse("no window with OpenGL");
       surface = std::make_unique<GlSurface>(window.get(), settings.vertical_sync);
+      watch.emplace(window.get());
       return;
     } catch (const std::runtime_error&) {
       window.reset();
@@ -162,11 +165,13 @@ struct Window::State {
     window = open(settings, 0);
     if (window == nullptr) refuse("the display opens no window");
     surface = std::make_unique<CopiedSurface>(window.get());
+    watch.emplace(window.get());
   }
 
   SdlSession session;
   WindowHandle window;
   std::unique_ptr<Surface> surface;
+  std::optional<DisplayWatch> watch;
 };
 
 Window::Window(const WindowSettings& settings) : state_(std::make_unique<State>(settings)) {}
@@ -193,6 +198,8 @@ float Window::density() const {
   SDL_GetWindowSize(state_->window.get(), &units, &ignored);
   return units > 0 ? static_cast<float>(width()) / static_cast<float>(units) : 1;
 }
+
+bool Window::lost() const { return state_->watch->lost(); }
 
 void Window::show(Renderer& renderer) { state_->surface->show(renderer); }
 

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <optional>
 #include <random>
 #include <span>
 #include <stdexcept>
@@ -124,6 +125,8 @@ TEST(Recording, WhatIsWrongIsSaidWithItsLine) {
       {"softcell recording 2\n",
        "line 1: a recording of another version, 'softcell recording 2'; this softcell reads 'softcell "
        "recording 1'"},
+      {"softcell recording 1\r\ndimension 2\r\n",
+       "line 1: the line ends in CR LF, as of Windows; lines of a recording end in LF"},
       {"softcell recording 1\ndimension 3\n", "line 2: this is a recording of demo 3d, and this is demo 2d"},
       {"softcell recording 1\ndimension 4\n", "line 2: the dimension '4' is not a number from 2 to 3"},
       {"softcell recording 1\ndimension 2\nscene \n",
@@ -244,6 +247,32 @@ TEST(Replay, OfAnotherSceneIsRefused) {
   EXPECT_TRUE(contains(refusal_of(other), "another version of the scene s"));
   other.name = "t";
   EXPECT_TRUE(contains(refusal_of(other), "a recording of the scene s, and this is t"));
+}
+
+TEST(Replay, WithOtherContactsIsRefused) {
+  const tests::ScratchFolder scratch;
+  RecordingFiles recorded, repeated;
+  recorded.record = repeated.replay = scratch.path() / "run.rec";
+  Scene2d scene = std::get<Scene2d>(parse_scene(kScene2d, "s.toml"));
+  ASSERT_EQ(scene.contacts, ppu::ContactMethod::kSurface);
+  InputLog<2> log(recorded);
+  log.begin(scene, ppu::ContactMethod::kSpheres);
+  log.save(0);
+  EXPECT_NO_THROW(InputLog<2>(repeated).begin(scene, ppu::ContactMethod::kSpheres));
+  for (const std::optional<ppu::ContactMethod> contacts :
+       {std::optional<ppu::ContactMethod>(), std::optional(ppu::ContactMethod::kSurface)}) {
+    try {
+      InputLog<2>(repeated).begin(scene, contacts);
+      ADD_FAILURE() << "accepted";
+    } catch (const std::runtime_error& error) {
+      EXPECT_EQ(std::string(error.what()),
+                repeated.replay->string() +
+                    ": a recording in which bodies touch with --contacts spheres, and here they touch with "
+                    "surface; give --contacts spheres");
+    }
+  }
+  scene.contacts = ppu::ContactMethod::kSpheres;
+  EXPECT_NO_THROW(InputLog<2>(repeated).begin(scene)) << "the scene may say so, too";
 }
 
 TEST(Replay, ThatEndsInAnotherStateIsSaidSo) {

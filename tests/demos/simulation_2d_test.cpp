@@ -448,6 +448,34 @@ TEST(Simulation2d, RigidBodiesOfAnySizeAndPlaceMove) {
     EXPECT_TRUE(simulation.rigid_pose(i).position.allFinite()) << i;
 }
 
+class FrameTimesOf2d : public testing::TestWithParam<Solver> {};
+
+TEST_P(FrameTimesOf2d, ContactsOfSurfacesAreNotCountedAsShapeMatching) {
+  const Scene2d scene = load_scene_2d("stack");
+  FrameTimes surface, spheres;
+  const auto add = [](FrameTimes& sum, const FrameTimes& one) {
+    EXPECT_DOUBLE_EQ(one.ppu_ms, one.gather_ms + one.solve_ms + one.apply_ms + one.contacts_ms + one.skin_ms);
+    EXPECT_GT(one.solve_ms, 0);
+    sum.solve_ms += one.solve_ms, sum.contacts_ms += one.contacts_ms, sum.apply_ms += one.apply_ms;
+  };
+  Simulation2d touching(scene, {.solver = GetParam(), .spes = 2});
+  Simulation2d with_circles(scene,
+                            {.solver = GetParam(), .contacts = ppu::ContactMethod::kSpheres, .spes = 2});
+  for (int frame = 0; frame < 60; ++frame) {
+    add(surface, touching.step());
+    add(spheres, with_circles.step());
+  }
+  EXPECT_GT(surface.contacts_ms, 0);
+  EXPECT_EQ(surface.apply_ms, 0);
+  EXPECT_EQ(spheres.contacts_ms, 0) << "Box2D's";
+  EXPECT_GT(spheres.apply_ms, 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Solvers, FrameTimesOf2d, testing::Values(Solver::kSpe, Solver::kReference),
+                         [](const auto& tested) {
+                           return tested.param == Solver::kSpe ? "OnSpes" : "OnThePpu";
+                         });
+
 TEST(Simulation2d, TheLightestAndSmallestMaterialMoves) {
   const Scene2d scene = std::get<Scene2d>(
       parse_scene("dimension = 2\n[[soft_body]]\ncell_size = 0.001\ndensity = 0.001\ncontact_radius = 0.01\n"

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -45,6 +46,8 @@ TEST(RunVerb, CountsWhatContextsHaveMovedThatTheProgramHasNotDestroyed) {
 TEST(RunVerb, EndsAsTheProgramDoes) {
   EXPECT_EQ(run_softcell("run -- " + kForgets + " 17").status, 17);
   EXPECT_EQ(run_softcell("run -- sh -c 'kill -9 $$'").status, 137);
+  EXPECT_EQ(run_softcell("run -- sh -c 'kill -s XFSZ $$'").status, 128 + SIGXFSZ)
+      << "a signal that softcell ignores and the program does not";
   const CommandResult other = run_softcell("run -- true");
   EXPECT_EQ(other.status, 0);
   EXPECT_TRUE(has(other, "no SPE context was made")) << other.output;
@@ -161,6 +164,88 @@ TEST(RunVerb, RecordsATrace) {
   const CommandResult run = run_softcell("run --trace " + (folder / "t.json") + " -- " + kForgets);
   EXPECT_EQ(run.status, 0) << run.output;
   EXPECT_EQ(run_softcell("report " + (folder / "t.json") + " --out " + (folder / "t.html")).status, 0);
+}
+
+TEST(RunVerb, WritesATraceToStandardOutput) {
+  const ScratchFolder folder;
+  const CommandResult run =
+      run_shell("cd " + folder.path().string() + " && " SOFTCELL_COMMAND " run --trace - -- " + kForgets +
+                " 2>said >t.json");
+  EXPECT_EQ(run.status, 0) << run.output;
+  EXPECT_FALSE(std::filesystem::exists(folder / "-"));
+  EXPECT_EQ(run_softcell("report " + (folder / "t.json") + " --out " + (folder / "t.html")).status, 0);
+}
+
+TEST(RunVerb, SaysWhoseTraceItIsIfThereAreSeveralProcesses) {
+  const ScratchFolder folder;
+  const CommandResult run =
+      run_softcell("run --trace " + (folder / "t.json") + " -- sh -c '" + kPingPong + "; " + kPingPong + "'");
+  EXPECT_EQ(run.status, 0) << run.output;
+  EXPECT_TRUE(has(run, "softcell: '" + (folder / "t.json") + "' has the trace of the last of 2 processes\n"))
+      << run.output;
+}
+
+TEST(RunVerb, RefusesAFileThatItCannotWriteBeforeTheRun) {
+  const ScratchFolder folder;
+  for (const std::string& file : {folder / "none/t.json", folder.path().string()}) {
+    for (const std::string option : {"--trace ", "--json "}) {
+      const CommandResult run =
+          run_softcell("run " + option + file + " -- sh -c 'touch " + (folder / "ran") + "'");
+      EXPECT_EQ(run.status, 1) << option << file;
+      EXPECT_EQ(run.output.rfind("softcell: cannot write " + file + ": ", 0), 0u) << run.output;
+      EXPECT_FALSE(std::filesystem::exists(folder / "ran")) << option << file;
+    }
+  }
+  const CommandResult full = run_softcell("run --trace /dev/full -- " + kForgets);
+  EXPECT_EQ(full.status, 1);
+  EXPECT_TRUE(has(full, "1 SPE context, 1 run, 1 DMA command")) << full.output;
+  EXPECT_TRUE(has(full, "softcell: cannot write /dev/full: No space left on device")) << full.output;
+}
+
+TEST(RunVerb, ReplacesNeitherItsProgramNorAnotherOfItsFiles) {
+  const ScratchFolder folder;
+  const std::string program = folder / "program";
+  std::filesystem::copy_file("/bin/true", program);
+  const auto size = std::filesystem::file_size(program);
+  for (const std::string option : {"--trace", "--json"}) {
+    const CommandResult run = run_softcell("run " + option + " " + program + " -- " + program);
+    EXPECT_EQ(run.status, 2);
+    EXPECT_TRUE(has(run, "softcell: the program and " + option + " are one file, " + program)) << run.output;
+    EXPECT_EQ(std::filesystem::file_size(program), size);
+  }
+  const std::string file = folder / "j";
+  EXPECT_TRUE(has(run_softcell("run --json " + file + " --trace " + file + " -- true"),
+                  "softcell: --json and --trace are one file, " + file + "; give each a file of its own"));
+  EXPECT_EQ(run_softcell("run --json - --trace - -- true").status, 2);
+}
+
+/// Runs a line of shell in an empty folder, with the name of a file among the words; the line's output.
+std::string said_by(const ScratchFolder& folder, const std::string& line) {
+  return run_shell("cd " + folder.path().string() + "; TMPDIR=$PWD; export TMPDIR; " + line).output;
+}
+
+TEST(RunVerb, SeedsThatAreInterruptedAreNoDifference) {
+  for (const std::string to : {"", "--foreground "}) {  // with it softcell alone gets the signal
+    for (const std::string signal : {"INT", "TERM", "HUP"}) {
+      const ScratchFolder folder;
+      const std::string said =
+          said_by(folder, "timeout " + to + "-s " + signal +
+                              " 1 " SOFTCELL_COMMAND
+                              " run --quiet --seeds 1000000 --json j -- sleep 0.01; echo $?; ls -A");
+      EXPECT_TRUE(said.starts_with("softcell: interrupted; ")) << signal << ": " << said;
+      EXPECT_NE(said.find(" of 1000000 seeds gave the same outcome\n"), std::string::npos) << said;
+      EXPECT_EQ(said.find("depends on the order"), std::string::npos) << said;
+      EXPECT_TRUE(std::filesystem::is_empty(folder.path())) << said;
+    }
+  }
+}
+
+TEST(RunVerb, PassesOnWhatEndsIt) {
+  const ScratchFolder folder;
+  const std::string said =
+      said_by(folder, "timeout --foreground -s TERM 1 " SOFTCELL_COMMAND " run --json j -- sleep 60; ls -A");
+  EXPECT_EQ(said,
+            "softcell: sleep was ended by signal 15; no SPE context was made with softcell's libspe2\nj\n");
 }
 
 TEST(RunVerb, RefusesWhatMakesNoSense) {

@@ -208,18 +208,49 @@ TEST_F(CheckerTest, ALoadIsFreeAfterTheWaitAndNotAfterThatOfAnotherTag) {
   EXPECT_EQ(rules(), Texts{"load-in-flight"});
 }
 
-TEST_F(CheckerTest, ALoadIsFreeWhenTheStatusOfAllTagsCanBeRead) {
-  issue(MfcOpcode::get, buffer_, kEa, 128, 3);
+/// The count of the channel, or the event, says that the status is there: then the tags that were waited for are complete.
+TEST_F(CheckerTest, ALoadIsFreeAsSoonAsTheStatusIsThere) {
+  const auto ask = [&](std::uint32_t mask, std::uint32_t condition) {
+    for (const std::uint32_t tag : {3u, 4u}) issue(MfcOpcode::get, buffer_ + 64 * (tag - 3), kEa, 64, tag);
+    checker_.write(22, mask);
+    checker_.write(23, condition);
+  };
+  const auto read_status = [&](std::uint32_t tags) {
+    channels_.answer = tags;
+    checker_.read(24);
+  };
+  ask(1u << 3 | 1u << 4, 2);
+  checker_.count(24);
+  load(buffer_, 128);
+  EXPECT_TRUE(rules().empty());
+  read_status(1u << 3 | 1u << 4);
+  ask(1u << 3, 1);
+  channels_.answer = 1;  // the event of the tag status
+  checker_.read(0);
+  load(buffer_, 64);
+  EXPECT_TRUE(rules().empty());
+  load(buffer_ + 64, 64);
+  EXPECT_EQ(rules(), std::vector<std::string>{"load-in-flight"}) << "of the other tag";
+}
+
+/// Of several tags any one may be complete.
+TEST_F(CheckerTest, AStatusThatIsThereDoesNotSayWhichOfSeveralTagsIsComplete) {
+  issue(MfcOpcode::get, buffer_, kEa, 64, 3);
+  issue(MfcOpcode::get, buffer_ + 64, kEa, 64, 4);
   checker_.write(22, 1u << 3 | 1u << 4);
   checker_.write(23, 1);
   checker_.count(24);
-  load(buffer_, 4);
-  EXPECT_EQ(rules(), Texts{"load-in-flight"}) << "any of two tags may be the other one";
-  checker_.write(23, 2);
-  checker_.count(23);
+  load(buffer_, 64);
+  EXPECT_EQ(rules(), std::vector<std::string>{"load-in-flight"});
+}
+
+TEST_F(CheckerTest, AStatusThatDoesNotWaitSaysNothingByBeingThere) {
+  issue(MfcOpcode::get, buffer_, kEa, 64, 3);
+  checker_.write(22, 1u << 3);
+  checker_.write(23, 0);
   checker_.count(24);
-  load(buffer_ + 4, 4);
-  EXPECT_EQ(rules(), Texts{"load-in-flight"});
+  load(buffer_, 64);
+  EXPECT_EQ(rules(), std::vector<std::string>{"load-in-flight"});
 }
 
 TEST_F(CheckerTest, AVariableOfAFunctionThatHasReturnedIsNoBuffer) {

@@ -81,6 +81,15 @@ TEST(ManualPage, OfTheCommandNamesEveryOptionOfEveryVerb) {
   }
 }
 
+TEST(ManualPage, SaysWhatMayBeLeftOutAndWhatMayBeRepeated) {
+  const std::string page = without_escapes(run_softcell("man").output);
+  for (const char* line :
+       {"softcell spu run [options] IMAGE\n", "softcell spu budget [options] [KERNELS...]\n",
+        "softcell help [options] [VERB...]\n", "softcell run [options] PROGRAM...\n", "--in NAME=FILE ...\n",
+        "--arg WORD ...\n", "--trace FILE\n"})
+    EXPECT_NE(page.find(line), std::string::npos) << line;
+}
+
 TEST(ManualPage, SaysWhichOptionsGoTogether) {
   const std::string page = without_escapes(run_softcell("man").output);
   EXPECT_NE(page.find("longest side (default: 8); needs --mesh; not with --cell.\n"), std::string::npos);
@@ -135,6 +144,7 @@ TEST(BashCompletion, KeepsNamesWithSpacesWhole) {
   EXPECT_EQ(sorted("spu run --in x = m"), "<my folder><my kernel.elf>");
   EXPECT_EQ(sorted("run my"), "<my folder><my kernel.elf>");
   EXPECT_EQ(sorted("run --checked -- my"), "<my folder><my kernel.elf>");
+  EXPECT_EQ(sorted("spu run --host-calls --folder my"), "<my folder>");
 }
 
 TEST(BashCompletion, OfHelpKnowsTheVerbs) {
@@ -142,6 +152,24 @@ TEST(BashCompletion, OfHelpKnowsTheVerbs) {
   EXPECT_EQ(offered(folder, kCommandsScript, "softcell help de"), "demo ");
   EXPECT_EQ(offered(folder, kCommandsScript, "softcell help spu di"), "disasm ");
   EXPECT_EQ(offered(folder, kCommandsScript, "softcell hel"), "help ");
+}
+
+TEST(BashCompletion, OffersNothingThatIsRefused) {
+  const ScratchFolder folder;
+  std::ofstream(folder / "matches.txt") << "";
+  std::ofstream(folder / "--scenes") << "";
+  const auto offered_for = [&](const std::string& words) {
+    return offered(folder, kCommandsScript, "softcell " + words);
+  };
+  EXPECT_EQ(offered_for("spu disasm match"), "matches.txt ")
+      << "softcell's own kernels are built for the host";
+  EXPECT_EQ(offered_for("help spu run match"), " ") << "help takes verbs only";
+  EXPECT_EQ(offered_for("help demo 2d --he"), " ");
+  EXPECT_EQ(offered_for("help --he"), "--help ");
+  EXPECT_EQ(offered_for("run --ch"), "--checked ");
+  EXPECT_EQ(offered_for("run -- ./p --ch"), " ") << "the program's own options are unknown";
+  EXPECT_EQ(offered_for("run -- ./p --sc"), "--scenes ");
+  EXPECT_EQ(offered_for("run -- ./p --dma ea"), " ");
 }
 
 TEST(BashCompletion, OfTheCommandKnowsItsKernels) {
@@ -191,6 +219,11 @@ TEST(FishCompletion, OfTheCommandKnowsScenesKernelsAndFiles) {
   EXPECT_EQ(completed_by_fish("softcell completion "), "bash fish zsh ");
   EXPECT_EQ(completed_by_fish("softcell run ma"), "matches.txt ");
   EXPECT_EQ(completed_by_fish("softcell help spu di"), "disasm ");
+  EXPECT_EQ(completed_by_fish("softcell help spu run match"), "");
+  EXPECT_EQ(completed_by_fish("softcell help demo 2d --he"), "");
+  EXPECT_EQ(completed_by_fish("softcell spu disasm match"), "matches.txt ");
+  EXPECT_EQ(completed_by_fish("softcell spu run --host-calls --folder m"), "my folder/ ");
+  EXPECT_EQ(completed_by_fish("softcell run -- ./p --ch"), "");
 }
 
 TEST(ZshCompletion, OffersWhatBashDoes) {
@@ -231,15 +264,24 @@ TEST(Quiet, PrintsNothing) {
 
 TEST(ProgressBar, SaysHowMuchTimeIsLeft) {
   using std::chrono::seconds;
-  EXPECT_EQ(progress_line("demo 2d", 0, 10, seconds(0)), "demo 2d [" + std::string(40, ' ') + "]   0%");
-  EXPECT_EQ(progress_line("x", 10, 40, seconds(0)),
+  EXPECT_EQ(progress_line("demo 2d", 0, 10, seconds(0), 80), "demo 2d [" + std::string(40, ' ') + "]   0%");
+  EXPECT_EQ(progress_line("x", 10, 40, seconds(0), 80),
             "x [" + std::string(10, '=') + std::string(30, ' ') + "]  25%")
       << "the first second says too little";
-  EXPECT_TRUE(progress_line("x", 10, 40, seconds(20)).ends_with("]  25%  1:00 left"));
-  EXPECT_TRUE(progress_line("x", 20, 40, seconds(9)).ends_with("]  50%  0:09 left"));
-  EXPECT_TRUE(progress_line("x", 1, 1000, seconds(11)).ends_with("]   0%  3:03:09 left"));
-  EXPECT_TRUE(progress_line("x", 40, 40, seconds(80)).ends_with("] 100%"));
-  EXPECT_TRUE(progress_line("x", 0, 0, seconds(1)).ends_with("] 100%"));
+  EXPECT_TRUE(progress_line("x", 10, 40, seconds(20), 80).ends_with("]  25%  1:00 left"));
+  EXPECT_TRUE(progress_line("x", 20, 40, seconds(9), 80).ends_with("]  50%  0:09 left"));
+  EXPECT_TRUE(progress_line("x", 1, 1000, seconds(11), 80).ends_with("]   0%  3:03:09 left"));
+  EXPECT_TRUE(progress_line("x", 40, 40, seconds(80), 80).ends_with("] 100%"));
+  EXPECT_TRUE(progress_line("x", 0, 0, seconds(1), 80).ends_with("] 100%"));
+}
+
+TEST(ProgressBar, FitsIntoANarrowTerminal) {
+  using std::chrono::seconds;
+  EXPECT_EQ(progress_line("demo 2d", 10, 20, seconds(30), 39), "demo 2d [====     ]  50%  0:30 left");
+  EXPECT_EQ(progress_line("demo 2d", 10, 20, seconds(30), 20), "demo 2d  50%");
+  EXPECT_EQ(progress_line("demo 2d", 10, 20, seconds(30), 9), "demo 2d  ");
+  for (std::size_t columns = 0; columns < 90; ++columns)
+    EXPECT_LE(progress_line("spu explore", 1, 1000, seconds(300), columns).size(), columns);
 }
 
 }  // namespace

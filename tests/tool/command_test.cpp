@@ -21,6 +21,7 @@
 #include <utility>
 #include <vector>
 
+#include "bench/median.h"
 #include "softcell/render/png_io.h"
 #include "support/files_in.h"
 #include "support/run_command.h"
@@ -347,6 +348,15 @@ TEST(Command, RefusesAReplayOfAnotherVersionOrSceneInOneSentence) {
             begin +
                 "a recording of the scene mine, and this is man; give the one that was recorded with "
                 "--scene\n");
+  EXPECT_EQ(
+      refusal(demo + "--replay " + recording),
+      begin +
+          "a recording of the scene mine, which does not come with softcell; give its file with --scene\n");
+  EXPECT_EQ(
+      refusal(demo + scene("3") + " --contacts spheres --replay " + recording),
+      begin +
+          "a recording in which bodies touch with --contacts surface, and here they touch with spheres; "
+          "give --contacts surface\n");
   EXPECT_EQ(refusal("demo 3d --headless --replay " + recording),
             begin + "line 2: this is a recording of demo 2d, and this is demo 3d\n");
   write_file(recording, "softcell recording 2\ndimension 2\n");
@@ -372,6 +382,13 @@ TEST(Command, ListsBenchmarksWithoutRunningThem) {
             "solver3d/penguin150/w2/spe\nsolver3d/penguin150/w2/bullet-links\n"
             "solver3d/penguin150/w2/bullet-pose\nsolver3d/penguin150/w2/eigen\n"
             "solver3d/penguin150/w2/naive\nsolver3d/penguin150/w2/ppu\n");
+}
+
+TEST(Command, TheMedianOfAnEvenNumberOfRoundsIsBetweenTheTwoInTheMiddle) {
+  EXPECT_EQ(tool::median_of(std::vector{3.0}), 3);
+  EXPECT_EQ(tool::median_of(std::vector{3.0, 4.0}), 3.5);
+  EXPECT_EQ(tool::median_of(std::vector{3.0, 4.0, 7.0}), 4);
+  EXPECT_EQ(tool::median_of(std::vector{3.0, 4.0, 7.0, 8.0}), 5.5);
 }
 
 TEST(Command, MeasuresWhatItIsAskedTo) {
@@ -712,6 +729,9 @@ TEST(Command, SavesASceneThatBeginsWithWhatThereIs) {
   };
   EXPECT_NE(refusal("--frames 1 --save-scene s.lua", 2).find("give a file name that ends in .toml"),
             std::string::npos);
+  EXPECT_NE(
+      refusal("--frames 1 --save-scene s.state", 2).find("--save-scene s.state: give a file name that ends"),
+      std::string::npos);
   EXPECT_NE(refusal("--frames 1 --save-scene -", 2).find("cannot write to standard output"),
             std::string::npos);
   EXPECT_NE(refusal("--frames 1 --scene s.toml --save-scene s.toml", 2).find("and --save-scene are one file"),
@@ -719,6 +739,8 @@ TEST(Command, SavesASceneThatBeginsWithWhatThereIs) {
   EXPECT_NE(refusal("--frames 1 --save-scene x.toml --json x.state", 2).find("the state of --save-scene"),
             std::string::npos);
   EXPECT_NE(refusal("--frames 1000 --save-scene none/x.toml", 1).find("none/x.toml"), std::string::npos);
+  EXPECT_NE(refusal("--ui-scale 2", 2).find("--ui-scale is for text and menus in a window"),
+            std::string::npos);
   EXPECT_NE(refusal("--ui-scale 9", 2).find("--ui-scale 9: give a number from 0.5 to 4"), std::string::npos);
 }
 
@@ -870,6 +892,18 @@ TEST(Command, WritesIntoPipesOneAfterTheOther) {
   EXPECT_EQ(run.status, 0) << run.output;
   EXPECT_GT(std::filesystem::file_size(folder / "trace"), 100u);
   EXPECT_GT(std::filesystem::file_size(folder / "json"), 100u);
+}
+
+TEST(Command, SaysThatAFileWouldBeLargerThanTheLimit) {
+  for (const std::string option : {"--trace", "--json"}) {
+    const ScratchFolder folder;
+    const CommandResult run =
+        run_shell("cd " + folder.path().string() +
+                  "; ulimit -f 0; " SOFTCELL_COMMAND " demo 2d --headless --quiet --frames 1 --size 32x32 " +
+                  option + " f 2>&1 | cat");
+    EXPECT_EQ(run.output, "softcell: cannot write f: File too large\n") << option;
+    EXPECT_EQ(files_in(folder.path()), std::set<std::string>{}) << "a partial file is left";
+  }
 }
 
 TEST(Command, RefusesWhatItCannotWriteBeforeALongRun) {

@@ -317,6 +317,14 @@ TEST_F(SpuCommand, CheckedHasNothingToSayAboutACorrectKernel) {
   }
 }
 
+TEST_F(SpuCommand, WritesJsonAboutAFileWhoseNameIsNotUtf8) {
+  const std::string kernel = folder_ / "talk\xff.spu.elf";
+  std::filesystem::copy_file(kTalk, kernel);
+  const CommandResult run = run_softcell("spu budget '" + kernel + "' --json " + (folder_ / "b.json"));
+  ASSERT_EQ(run.status, 0) << run.output;
+  EXPECT_EQ(read_json(folder_ / "b.json")[0]["kernel"], "talk\xEF\xBF\xBD") << "the replacement character";
+}
+
 TEST_F(SpuCommand, BudgetTakesKernelsOfTheUsersOwn) {
   const CommandResult run =
       run_softcell("spu budget " + kSaxpy + " skin " + kTalk + " --json " + (folder_ / "b.json"));
@@ -352,6 +360,11 @@ TEST_F(SpuCommand, SaysHowMuchOfACheckedStackIsForTheChecks) {
       << run.output;
   EXPECT_EQ(read_json(folder_ / "s.json")["local_store"]["stack_for_checks"], 1024);
 
+  const CommandResult on_spu =
+      run_softcell("spu budget --checked " SOFTCELL_SPU_PROGRAMS "/scale_stream.O2.elf");
+  EXPECT_EQ(on_spu.status, 0) << on_spu.output;
+  EXPECT_EQ(on_spu.output.find("instrumented"), std::string::npos)
+      << "a program built for the SPU has no such flavour: " << on_spu.output;
   const CommandResult budget =
       run_softcell("spu budget --checked " + kSaxpy + " --json " + (folder_ / "b.json"));
   ASSERT_EQ(budget.status, 0) << budget.output;
@@ -480,6 +493,20 @@ TEST_F(SpuCommand, ExploreComparesNothingOfARunThatDoesNotEnd) {
   EXPECT_NE(run.output.find("deadline-exceeded"), std::string::npos) << run.output;
   EXPECT_NE(run.output.find("nothing to compare"), std::string::npos) << run.output;
   EXPECT_EQ(read_json(folder_ / "e.json")["differs"], false);
+}
+
+TEST_F(SpuCommand, RunSaysWhenItIsInterrupted) {
+  for (const std::string signal : {"INT", "TERM", "HUP"}) {
+    const auto begin = std::chrono::steady_clock::now();
+    const CommandResult run =
+        run_shell("timeout --preserve-status -s " + signal + " 0.5 " SOFTCELL_COMMAND " spu run " + kTalk +
+                  " --in-mbox 5 --deadline 30 --json " + (folder_ / "i.json"));
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(20)) << signal;
+    EXPECT_EQ(run.status, 130) << signal << ": " << run.output;
+    EXPECT_NE(run.output.find("softcell: interrupted; no file is written\n"), std::string::npos)
+        << run.output;
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "i.json")) << signal;
+  }
 }
 
 TEST_F(SpuCommand, ExploreEndsAtCtrlCWithinARun) {

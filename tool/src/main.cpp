@@ -2,12 +2,14 @@
 
 #include <CLI/CLI.hpp>
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <exception>
 #include <new>
 #include <stdexcept>
 #include <string>
+#include <system_error>
 
 #include "all_verbs.h"
 #include "command_line/shell_verbs.h"
@@ -67,6 +69,8 @@ void finish_printing() {
 }  // namespace
 
 int main(int argc, char** argv) {
+  // A write beyond the limit of file sizes fails as one to a full disk does, and does not end the process.
+  std::signal(SIGXFSZ, SIG_IGN);
   try {
     CommandLine command_line;
     try {
@@ -80,6 +84,13 @@ int main(int argc, char** argv) {
     }
   } catch (const std::bad_alloc&) {
     std::fprintf(stderr, "softcell: there is not enough memory\n");
+    return 1;
+  } catch (const std::system_error& error) {
+    // What a thread that cannot be started throws says nothing of threads.
+    const bool is_thread = error.code() == std::errc::resource_unavailable_try_again;
+    std::fprintf(stderr, "softcell: %s\n",
+                 is_thread ? "no more threads can be started: there is not enough memory, or too many run"
+                           : base::one_line(error.what()).c_str());
     return 1;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "softcell: %s\n", base::one_line(error.what()).c_str());

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "recording.h"
+#include "scene/scene.h"
 #include "scene/scene_hash.h"
 #include "softcell/base/assert.h"
 #include "softcell/base/whole_file.h"
@@ -43,15 +44,21 @@ class InputLog {
 
   /// In a replay, removes the scene's script, because its events are in the recording. Opens the file of a new recording now, so that a
   /// file that cannot be written ends the run at its beginning.
-  /// @throws std::runtime_error  the replay is of another scene, or the file cannot be written.
+  /// @param contacts  how bodies touch in this run; none: as the scene says
+  /// @throws std::runtime_error  the replay is of another scene or of other contacts, or the file cannot be written.
   template <class SceneOfDimension>
-  void begin(SceneOfDimension& scene) {
+  void begin(SceneOfDimension& scene, std::optional<ppu::ContactMethod> contacts = std::nullopt) {
     SC_ASSERT(record_.frames == 0 && !file_, "a log begins scene '{}' after {} frames", scene.name,
               record_.frames);
     record_.scene = recordable_name(scene.name);
-    record_.scene_hash = scene_hash(scene);
+    const ppu::ContactMethod method = contacts.value_or(scene.contacts);
+    record_.scene_hash = scene_hash(scene, method);
     if (replay_) {
-      if (replay_->scene_hash != record_.scene_hash) refuse_scene();
+      if (replay_->scene_hash != record_.scene_hash) {
+        for (const ppu::ContactMethod other : {ppu::ContactMethod::kSpheres, ppu::ContactMethod::kSurface})
+          if (replay_->scene_hash == scene_hash(scene, other)) refuse_contacts(other, method);
+        refuse_scene();
+      }
       scene.script = {};
     }
     if (path_) file_ = std::make_shared<base::WholeFile>(*path_);
@@ -119,6 +126,14 @@ class InputLog {
   }
 
  private:
+  [[noreturn]] void refuse_contacts(ppu::ContactMethod recorded, ppu::ContactMethod here) const {
+    const auto name = [](ppu::ContactMethod method) {
+      return std::string(kContactMethods.at(static_cast<std::size_t>(method)));
+    };
+    throw std::runtime_error(replay_name_ + ": a recording in which bodies touch with --contacts " +
+                             name(recorded) + ", and here they touch with " + name(here) +
+                             "; give --contacts " + name(recorded));
+  }
   [[noreturn]] void refuse_scene() const {
     throw std::runtime_error(replay_name_ + ": a recording of " +
                              (replay_->scene == record_.scene

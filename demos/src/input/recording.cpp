@@ -203,6 +203,8 @@ void read_header(Reader& reader, Recording<Dimension>& recording) {
   const std::string_view title = reader.rest();
   if (!title.starts_with(kTitle))
     reader.refuse("this is not a recording: it does not begin with 'softcell recording'");
+  if (title.ends_with('\r'))
+    reader.refuse("the line ends in CR LF, as of Windows; lines of a recording end in LF");
   if (title != fmt::format("{} {}", kTitle, kVersion)) {
     reader.refuse(fmt::format("a recording of another version, '{}'; this softcell reads '{} {}'",
                               Reader::quotable(title), kTitle, kVersion));

@@ -161,9 +161,9 @@ class Hash {
 
 }  // namespace
 
-std::uint64_t scene_hash(const Scene& scene) {
+std::uint64_t scene_hash(const Scene& scene, ppu::ContactMethod contacts) {
   const auto& [name, title, soft_bodies, boxes, obstacles, rigid_bodies, joints, attachments, tilt, gravity,
-               friction, restitution, substeps, contacts, sleep, frames, camera, light, script, cuts,
+               friction, restitution, substeps, own_contacts, sleep, frames, camera, light, script, cuts,
                pictures, files, notes, begin, document] = scene;
   Hash hash;
   hash.add(3, soft_bodies, boxes, obstacles, tilt, gravity, friction, substeps);
@@ -179,9 +179,9 @@ std::uint64_t scene_hash(const Scene& scene) {
   return hash.value();
 }
 
-std::uint64_t scene_hash(const Scene2d& scene) {
+std::uint64_t scene_hash(const Scene2d& scene, ppu::ContactMethod contacts) {
   const auto& [name, title, soft_bodies, rigid_bodies, attachments, gravity, friction, restitution, substeps,
-               contacts, sleep, frames, camera, script, cuts, pictures, files, begin, document] = scene;
+               own_contacts, sleep, frames, camera, script, cuts, pictures, files, begin, document] = scene;
   Hash hash;
   hash.add(2, soft_bodies, rigid_bodies, gravity, friction, substeps);
   hash.add_unless(restitution, 0.0f);

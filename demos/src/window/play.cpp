@@ -74,6 +74,16 @@ std::optional<std::filesystem::path> dropped_file(const SDL_Event& event) {
   return std::filesystem::path(name.get());
 }
 
+/// A window and what all its scenes share.
+struct Stage {
+  Stage(const WindowOptions& options, std::vector<SceneTitle> titles)
+      : window({.title = options.title, .width = options.width, .height = options.height}),
+        overlays(kTextScale * options.ui_scale.value_or(window.density()), std::move(titles)) {}
+
+  render::Window window;
+  Overlays overlays;
+};
+
 /// One scene in the window.
 class PlayedScene {
  public:
@@ -225,11 +235,12 @@ Run play(const WindowOptions& options, const std::vector<NamedDemo>& scenes, con
   SC_ASSERT(options.width > 0 && options.height > 0, "a window of {} by {} pixels", options.width,
             options.height);
   SC_ASSERT(options.ui_scale.value_or(1) > 0, "menus scaled by {}", options.ui_scale.value_or(1));
-  render::Window window({.title = options.title, .width = options.width, .height = options.height});
   std::vector<SceneTitle> titles;
   for (const NamedDemo& scene : scenes) titles.push_back({scene.name, scene.title});
   if (titles.size() == 1) titles.clear();
-  Overlays overlays(kTextScale * options.ui_scale.value_or(window.density()), std::move(titles));
+  auto stage = std::make_unique<Stage>(options, std::move(titles));
+  render::Window& window = stage->window;
+  Overlays& overlays = stage->overlays;
   Controllers controllers;
   FrameClock clock;
   std::optional<Look> look;
@@ -241,12 +252,14 @@ Run play(const WindowOptions& options, const std::vector<NamedDemo>& scenes, con
     if (run.record.interrupted) return run;
     if (look) run.demo->input().set_look(*look);
     if (std::exchange(begins_paused, false)) run.demo->input().do_now(Command::kPause);
-    PlayedScene scene(window, *run.demo, options.frames, overlays);
+    auto played = std::make_unique<PlayedScene>(window, *run.demo, options.frames, overlays);
+    PlayedScene& scene = *played;
     bool next = false, same_scene = false;
     std::size_t chosen = (number + 1) % scenes.size();
-    run_recorded(*run.demo, [&] {
+    const auto play_it = [&] {
       while (!next && !other && !scene.ends() && !interrupted()) {
         clock.wait();
+        if (window.lost()) throw std::runtime_error("the display of the window has gone; the demo ends here");
         SDL_Event event;
         while (!other && SDL_PollEvent(&event) != 0) {
           controllers.handle(event);
@@ -273,7 +286,17 @@ Run play(const WindowOptions& options, const std::vector<NamedDemo>& scenes, con
         }
       }
       run.record = scene.finish();
-    });
+    };
+    try {
+      run_recorded(*run.demo, play_it);
+    } catch (...) {
+      if (!window.lost()) throw;
+      // A call for the display may never return, and what it uses stays until the program ends, which is now.
+      static_cast<void>(played.release());
+      static_cast<void>(stage.release());
+      run.demo.release()->stop();
+      throw;
+    }
     run.record.interrupted = interrupted();
     if (!next && !other) return run;
     look = run.demo->input().look();

@@ -17,7 +17,8 @@ using dma::MfcOpcode;
 using dma::Rule;
 
 constexpr std::uint32_t kEventStatus = 0, kListStallStatus = 25, kListStallAck = 26, kAtomicStatus = 27;
-constexpr std::uint32_t kTagStatusEvent = 1;  // Tg [CBEA] documented
+constexpr std::uint32_t kAllTags = 2;         // what MFC_WrTagUpdate waits for
+constexpr std::uint32_t kTagStatusEvent = 1;  // of SPU_RdEventStat
 
 std::string hex(std::uint32_t lsa) {
   static constexpr char kDigits[] = "0123456789ABCDEF";
@@ -57,8 +58,7 @@ void Checker::begin_run(const KernelImage& image, const StackRange& stack, bool 
   in_flight_.clear();
   tag_mask_ = tags_issued_ = 0;
   is_waiting_ = false;
-  waits_for_all_ = stack_is_in_flight_ = false;
-  mask_asked_ = 0;
+  stack_is_in_flight_ = false;
   asked_at_ = 0;
   status_unread_.reset();
   reservation_.reset();
@@ -405,7 +405,8 @@ void Checker::check_frames(Address here, std::uint32_t stack_pointer) {
 ChannelReply Checker::count(std::uint32_t channel) {
   check_code(to_.engine.position());
   ChannelReply reply = to_.channels.count(channel);
-  if (channel == static_cast<std::uint32_t>(Channel::kMfcRdTagStat) && reply.value != 0) on_condition_holds();
+  if (!reply.fault && reply.value != 0 && channel == static_cast<std::uint32_t>(Channel::kMfcRdTagStat))
+    on_tag_status();
   return reply;
 }
 
@@ -421,11 +422,9 @@ ChannelReply Checker::write(std::uint32_t channel, std::uint32_t value) {
 }
 
 void Checker::on_tag_update(std::uint32_t condition) {
-  constexpr std::uint32_t kAll = 2;  // [CBEA] documented
   is_waiting_ = condition != 0;
-  waits_for_all_ = condition == kAll;
-  mask_asked_ = tag_mask_;
   asked_at_ = in_flight_.last_number();
+  awaited_ = condition == kAllTags || std::has_single_bit(tag_mask_) ? tag_mask_ : 0;
   if (!is_waiting_ || (tag_mask_ & tags_issued_) != 0) return;
   std::string tags;
   for (std::uint32_t tag = 0; tag < dma::kTagCount; ++tag) {
@@ -435,10 +434,9 @@ void Checker::on_tag_update(std::uint32_t condition) {
          tags.empty() ? "the tag mask is empty" : tags + ": no command since the last wait");
 }
 
-/// The status can be read, or its event has come: the tags that were waited for are complete. If any of several is enough, only the
-/// status says which.
-void Checker::on_condition_holds() {
-  if (is_waiting_ && (waits_for_all_ || std::has_single_bit(mask_asked_))) complete(mask_asked_);
+/// The tag status is there, as its channel's count or its event says, and not yet read: the tags that it waited for are complete.
+void Checker::on_tag_status() {
+  if (is_waiting_) complete(awaited_);
 }
 
 ChannelReply Checker::read(std::uint32_t channel) {
@@ -450,7 +448,7 @@ ChannelReply Checker::read(std::uint32_t channel) {
     complete(reply.value);
     if (is_waiting_) tags_issued_ &= ~reply.value;
   }
-  if (channel == kEventStatus && (reply.value & kTagStatusEvent) != 0) on_condition_holds();
+  if (channel == kEventStatus && (reply.value & kTagStatusEvent) != 0) on_tag_status();
   if (channel == kListStallStatus) on_list_stall(reply.value);
   if (channel == kAtomicStatus) status_unread_.reset();
   return reply;

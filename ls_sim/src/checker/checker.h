@@ -139,8 +139,8 @@ class Checker final : public ChannelPort, public AccessObserver {
   void end_reservation(const dma::MfcCommand& by);
   void check_frames(Address here, std::uint32_t stack_pointer);
   void complete(std::uint32_t tags);
-  void on_condition_holds();
   void on_tag_update(std::uint32_t condition);
+  void on_tag_status();
   void on_list_stall(std::uint32_t tags);
   void on_list_acknowledged(std::uint32_t tag);
 
@@ -170,10 +170,9 @@ class Checker final : public ChannelPort, public AccessObserver {
   std::uint32_t tags_issued_ = 0;    ///< since each was last waited for
   bool stack_is_in_flight_ = false;  ///< a command may move variables of functions
   bool stack_overflow_known_ = false;
-  bool is_waiting_ = false;                  ///< the open tag-status request is one that waits
-  bool waits_for_all_ = false;               ///< and for all tags of its mask
-  std::uint32_t mask_asked_ = 0;             ///< the mask when the request was made
-  std::uint64_t asked_at_ = 0;               ///< number of the last command when the request was made
+  bool is_waiting_ = false;     ///< the open tag-status request is one that waits
+  std::uint32_t awaited_ = 0;   ///< the tags that it waits for, all of them; 0: it waits for any of several
+  std::uint64_t asked_at_ = 0;  ///< number of the last command when the request was made
   std::optional<QuadwordStore> last_store_;  ///< not yet looked at
   std::optional<LineCommand> status_unread_;
   std::optional<LineCommand> reservation_;

@@ -167,6 +167,23 @@ TEST_P(FlatJoints, ALiftIsAsStrongAsItsMotor) {
 }
 
 /// Wheels on springs, on a road.
+/// Box2D applies a spring's force by itself: if softcell applied it as well, the spring would carry the block at two thirds of its way.
+TEST_P(FlatJoints, ASpringActsAsStronglyUnderABlock) {
+  const auto s = scene();
+  b2Body& plank = s->add_plank({0, 1}, {1.2f, 0.1f}, 0.5f);
+  s->join<b2PrismaticJointDef>(s->ground, plank, b2Vec2(0, 1), b2Vec2(0, 1));
+  const float load = (plank.GetMass() + s->block.model().mass()) * 9.81f;
+  b2DistanceJointDef spring;
+  spring.Initialize(&s->ground, &plank, {0, -0.5f}, {0, 1});
+  spring.minLength = 0.1f, spring.maxLength = 3;
+  spring.stiffness = load / 0.2f;
+  spring.damping = 2 * std::sqrt(spring.stiffness * plank.GetMass());
+  auto* const joint = static_cast<b2DistanceJoint*>(s->w->box2d.CreateJoint(&spring));
+  s->w->run(6);
+  EXPECT_NEAR(plank.GetPosition().y, 1 - 0.2f, 0.01f * 0.2f);
+  EXPECT_NEAR(joint->GetReactionForce(1 / kFlatStep).Length(), load, 0.01f * load);
+}
+
 TEST_P(FlatJoints, ACarCarriesABlock) {
   const auto s = scene();
   constexpr float kMass = 0.05f;

@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <memory>
 #include <tuple>
+#include <vector>
 
 #include "contact_world.h"
 
@@ -68,6 +70,37 @@ TEST(HeavyBody, OfTwiceItsMassIsStoppedByASoftWallAndMomentumIsKept) {
   // Both move on together, or apart: the box has two thirds of the mass.
   EXPECT_LT(box.getLinearVelocity().x(), wall.linear_momentum().x() / wall.model().mass() + 0.01f);
   EXPECT_LT(box.getLinearVelocity().x(), 0.68f * kSpeed);
+}
+
+/// Bullet adds forces and torques later in its step, as it adds gravity.
+TEST(HeavyBody, AForceBesideTheMiddlePressesWithItsMoment) {
+  constexpr float kForce = 100, kBeside = 0.1f, kMass = 2;
+  ContactWorld w;
+  w.add_floor();
+  const SoftBody<3>& cushion =
+      w.add(make_box({0.8f, 0.4f, 0.8f}, 0.1f), settings_of(0.1f, 0.7f, 0.3f), {0, 0.21f, 0});
+  btRigidBody& box = w.add(std::make_unique<btBoxShape>(btVector3(0.2f, 0.1f, 0.2f)), kMass, {0, 0.52f, 0});
+  box.setActivationState(DISABLE_DEACTIVATION);
+  std::vector<Contact> contacts;
+  float pressing = 0, moment = 0;
+  for (int i = 0; i < 1200; ++i) {
+    box.applyForce({0, -kForce, 0}, {kBeside, 0, 0});
+    w.world.stepSimulation(kStep, 0);
+    w.world.clearForces();
+    if (i < 1080) continue;
+    contacts.clear();
+    w.bodies.append_contacts(contacts);
+    for (const Contact& contact : contacts) {
+      if (contact.second.object != &box) continue;
+      const float impulse = contact.impulse * std::abs(contact.normal.y());
+      pressing += impulse;
+      moment += impulse * (contact.position.x() - box.getWorldTransform().getOrigin().x());
+    }
+  }
+  EXPECT_NEAR(pressing, kForce + kMass * 9.81f, 0.03f * kForce);  // in one second
+  EXPECT_NEAR(moment, kBeside * kForce, 0.1f * kBeside * kForce);
+  EXPECT_GT(box.getWorldTransform().getBasis()[1].y(), 0.9f) << "it lies flat";
+  EXPECT_GT(cushion.centre_of_mass().y(), 0.1f);
 }
 
 /// Edges of the load stand in the surface of the body. How far was reckoned from where they would end, with an error that was another one in

@@ -300,6 +300,25 @@ TEST_P(JointsUnderACube, ALiftBringsItUp) {
   }
 }
 
+/// Bullet applies a spring's force by itself: if softcell applied it as well, the spring would carry the cube at four fifths of its way.
+/// Bullet's damper also sees the velocity which the load gives the plate within a substep: here that is 2 % of the way.
+TEST_P(JointsUnderACube, ASpringActsAsStrongly) {
+  const auto s = scene();
+  btRigidBody& plate = s->add_plank({0.6f, 0.04f, 0.6f}, 0.5f, {0, 0, 0});
+  auto& spring = s->join<btGeneric6DofSpring2Constraint>(plate, btTransform::getIdentity());
+  spring.setLinearLowerLimit({0, 1, 0});
+  spring.setLinearUpperLimit({0, -1, 0});
+  spring.setAngularLowerLimit({0, 0, 0});
+  spring.setAngularUpperLimit({0, 0, 0});
+  const float mass = 1.5f * s->cube->model().mass();
+  spring.enableSpring(1, true);
+  spring.setStiffness(1, mass * 9.81f / 0.1f, false);
+  spring.setDamping(1, mass, false);
+  spring.setEquilibriumPoint(1, 0);
+  s->w.run(400);
+  EXPECT_NEAR(plate.getWorldTransform().getOrigin().y(), -0.1f, 0.05f * 0.1f);
+}
+
 /// It throws nothing into the air either.
 TEST_P(JointsUnderACube, ABridgeOfPlanksCarriesIt) {
   for (const float mass : {1.0f, 0.1f}) {

@@ -2,12 +2,17 @@
 
 #include <gtest/gtest.h>
 
+#include <BulletCollision/CollisionDispatch/btGhostObject.h>
+
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "contact_world.h"
+#include "ppu/surfaces/moved_by_hand.h"
 #include "softcell/soft_bodies/attachment.h"
 
 namespace softcell::ppu {
@@ -100,6 +105,93 @@ TEST(MovingObstacles, AWallThatIsMovedPushesABodyAlong) {
 }
 
 /// Bullet's solver multiplies the effect of impulses by these factors: characters do not turn, and games in a plane stay in it.
+/// Bullet knows no velocity of a static body, of a collision object, or of a ghost such as its character controller moves. They went
+/// through soft bodies from 1 m/s on.
+TEST(MovingObstacles, WhatIsMovedByItsPlacePushesABodyAlong) {
+  enum { kStatic, kObject, kGhost, kKinds };
+  for (const float speed : {0.5f, 2.0f, 5.0f})
+    for (int kind = 0; kind < kKinds; ++kind) {
+      ContactWorld w;
+      w.add_floor();
+      const SoftBody<3>& body =
+          w.add(make_box({0.4f, 0.4f, 0.4f}, kOfCube), settings_of(kOfCube, 0.7f, 0.2f), {0, 0.201f, 0});
+      btBoxShape shape({0.1f, 0.5f, 0.5f});
+      btRigidBody door(0, nullptr, &shape);
+      btCollisionObject object;
+      btPairCachingGhostObject ghost;
+      btCollisionObject& pusher = kind == kStatic ? door : kind == kObject ? object : ghost;
+      pusher.setCollisionShape(&shape);
+      btTransform pose = btTransform::getIdentity();
+      pose.setOrigin({-0.5f, 0.51f, 0});
+      pusher.setWorldTransform(pose);
+      if (kind == kStatic)
+        w.world.addRigidBody(&door);
+      else
+        w.world.addCollisionObject(&pusher, btBroadphaseProxy::StaticFilter,
+                                   btBroadphaseProxy::AllFilter ^ btBroadphaseProxy::StaticFilter);
+      for (int i = 0; i < 60; ++i) {
+        pose.getOrigin() += btVector3(speed * kStep, 0, 0);
+        pusher.setWorldTransform(pose);
+        w.world.stepSimulation(kStep, 0);
+        float left = std::numeric_limits<float>::max();
+        for (const Vector3f& p : ContactWorld::drawn(body)) left = std::min(left, p.x());
+        ASSERT_GT(left, pose.getOrigin().x() + 0.1f - 0.1f * kOfCube)
+            << speed << " m/s, kind " << kind << ", step " << i;
+      }
+      w.world.removeCollisionObject(&pusher);
+    }
+}
+
+/// Such as a level that is put somewhere else: it does not sweep through what lies between.
+TEST(MovingObstacles, WhatIsPutFarAwayPushesNothingOnItsWay) {
+  ContactWorld w({0, 0, 0});
+  const SoftBody<3>& body =
+      w.add(make_box({0.4f, 0.4f, 0.4f}, kOfCube), settings_of(kOfCube, 0.7f, 0.2f), {0, 0, 0});
+  btRigidBody& block = w.add(std::make_unique<btBoxShape>(btVector3(0.2f, 0.2f, 0.2f)), 0, {-2, 0, 0});
+  w.run(1);
+  btTransform pose = block.getWorldTransform();
+  pose.setOrigin({2, 0, 0});
+  block.setWorldTransform(pose);
+  w.run(30);
+  EXPECT_LT(body.centre_of_mass().norm(), 1e-5f);
+}
+
+TEST(MovingObstacles, AWeldFollowsAStaticBodyThatIsMovedByItsPlace) {
+  ContactWorld w;
+  btRigidBody& hook = w.add(std::make_unique<btBoxShape>(btVector3(0.2f, 0.1f, 0.2f)), 0, {0, 1, 0});
+  SoftBody<3>& body =
+      w.add(make_box({0.4f, 0.4f, 0.4f}, kOfCube), settings_of(kOfCube, 0.9f, 0.2f), {0, 0.65f, 0});
+  const AttachmentId weld =
+      w.bodies.attach(body, Patch<3>::of_surface({0, 0.85f, 0}, 0.2f), hook, {.kind = AttachmentKind::kWeld});
+  float widest = 0;
+  btTransform pose = hook.getWorldTransform();
+  for (int i = 0; i < 120; ++i) {
+    pose.getOrigin() += btVector3(1 * kStep, 0, 0);
+    hook.setWorldTransform(pose);
+    w.world.stepSimulation(kStep, 0);
+    const auto state = w.bodies.attachment(weld);
+    ASSERT_TRUE(state);
+    widest = std::max(widest, state->gap);
+  }
+  EXPECT_LT(widest, 0.1f * kOfCube);
+  EXPECT_NEAR(body.centre_of_mass().x(), 1, 0.1f);
+}
+
+TEST(MovedByHand, HasTheVelocitiesOfItsWay) {
+  const Pose from{{1, 2, 3}, Eigen::AngleAxisf(0.3f, Vector3f::UnitY()).toRotationMatrix()};
+  const Pose to{{1.1f, 2, 2.8f}, Eigen::AngleAxisf(0.31f, Vector3f::UnitY()).toRotationMatrix()};
+  const auto motion = moved_by_hand(from, to, 1, 0.01f);
+  ASSERT_TRUE(motion);
+  EXPECT_EQ(motion->from, from);
+  EXPECT_LT((motion->velocity - Vector3f(10, 0, -20)).norm(), 1e-4f);
+  EXPECT_LT((motion->spin - Vector3f(0, 1, 0)).norm(), 1e-4f);
+  EXPECT_FALSE(moved_by_hand(from, from, 1, 0.01f)) << "it has not moved";
+  EXPECT_FALSE(moved_by_hand(from, {{1.6f, 2, 3}, from.rotation}, 1, 0.01f)) << "more than half of its size";
+  EXPECT_FALSE(moved_by_hand(from, {{3, 2, 3}, from.rotation}, 10, 0.01f)) << "200 m/s";
+  const Eigen::Matrix3f far = Eigen::AngleAxisf(1.5f, Vector3f::UnitY()).toRotationMatrix();
+  EXPECT_FALSE(moved_by_hand(from, {from.position, far}, 1, 0.01f)) << "turned by more than 60 degrees";
+}
+
 TEST(MovingObstacles, MoveAlongAndAboutTheAxesThatBulletLeavesThem) {
   const auto falls_on = [](const btVector3& linear, const btVector3& angular, bool attached) {
     ContactWorld w;

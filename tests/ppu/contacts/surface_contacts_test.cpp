@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "contact_world.h"
+#include "softcell/soft_bodies/state_hash.h"
 
 namespace softcell::ppu {
 namespace {
@@ -531,6 +532,27 @@ TEST(SurfaceContacts, SleepersOfAllSizesHoldWhatTouchesThem) {
   EXPECT_FALSE(small.asleep());
   EXPECT_TRUE(large.asleep());
   EXPECT_LT((thrown.linear_momentum() + small.linear_momentum() - momentum).norm(), 0.2f * momentum.norm());
+}
+
+/// Both get another model, of other particles: the world has to notice that of each of them.
+TEST(SurfaceContacts, TwoBodiesExchangeTheirStates) {
+  ContactWorld w;
+  w.add_floor();
+  SoftBody<3>& box = w.add(make_box({0.3f, 0.3f, 0.3f}, 0.1f), settings_of(0.1f), {0, 0.3f, 0});
+  SoftBody<3>& ball = w.add(make_sphere(0.3f, 6), settings_of(0.15f), {2, 0.5f, 0});
+  w.run(20);
+  const std::uint64_t of_box = state_hash(box), of_ball = state_hash(ball);
+  box = std::move(ball);
+  EXPECT_EQ(state_hash(ball), of_box);
+  EXPECT_EQ(state_hash(box), of_ball);
+  w.run(180);
+  for (const SoftBody<3>* const body : {&box, &ball}) {
+    EXPECT_GT(ContactWorld::lowest_drawn(*body), -0.01f);
+    EXPECT_LT(ContactWorld::lowest_drawn(*body), 0.01f);
+    EXPECT_LT(ContactWorld::fastest(*body), 0.05f);
+  }
+  EXPECT_NEAR(box.centre_of_mass().x(), 2, 0.02f);
+  EXPECT_NEAR(ball.centre_of_mass().x(), 0, 0.02f);
 }
 
 TEST(SurfaceContacts, KindsOfShapesHoldABody) {

@@ -83,6 +83,24 @@ TEST_F(TouchLogTest, ARemovedBodyEndsWhatHasBegunWithTheMeanOfItsPoints) {
   EXPECT_TRUE(log_.poll().empty());
 }
 
+/// The address sanitizer sees if it is read.
+TEST_F(TouchLogTest, ABodyThatIsGoneIsNotRead) {
+  auto gone = std::make_unique<SoftBody<3>>(body_);
+  touch();
+  for (auto& event : log_.poll()) EXPECT_EQ(event.kind, Kind::kBegin);
+  log_.begin_step();
+  auto& touch = log_[{1, TouchedKind::kRigid, 7}];
+  touch.event.body = gone.get();
+  touch.add(1, 1, {5, 0, 0}, {0, 1, 0});
+  ASSERT_EQ(log_.poll().size(), 2u);
+  log_.forget(*gone);
+  gone.reset();
+  log_.begin_step();
+  const auto events = log_.poll();
+  ASSERT_EQ(events.size(), 1u);
+  EXPECT_EQ(events[0].kind, Kind::kEnd);
+}
+
 TEST_F(TouchLogTest, NobodyHearsTheEndOfWhatHasNotBegun) {
   touch();
   log_.forget(body_);

@@ -14,6 +14,7 @@
 #include "bench_report.h"
 #include "benchmarks.h"
 #include "command_line/shared_options.h"
+#include "median.h"
 #include "softcell/base/assert.h"
 #include "verb/exit_status.h"
 #include "verb/interrupt.h"
@@ -67,11 +68,7 @@ struct Measurement {
     SC_ASSERT(!nanoseconds.empty(), "a measurement of {} items has no rounds", work.items);
     return nanoseconds.front();
   }
-  double median() const {
-    SC_ASSERT(std::ranges::is_sorted(nanoseconds) && !nanoseconds.empty(), "the median of {} rounds",
-              nanoseconds.size());
-    return nanoseconds[nanoseconds.size() / 2];
-  }
+  double median() const { return median_of(nanoseconds); }
 };
 
 std::chrono::nanoseconds spent(const Work& work) {

@@ -30,6 +30,7 @@ CommandOption command_option(const CLI::Option& option) {
   SC_ASSERT(!result.names.empty() && !result.description.empty(), "an option described as '{}' has {} names",
             result.description, result.names.size());
   if (option.get_expected_max() > 0) result.value = option.get_type_name();
+  result.repeated = option.get_expected_max() > 1;
   result.needs = names_of(option.get_needs());
   result.excludes = names_of(option.get_excludes());
   return result;

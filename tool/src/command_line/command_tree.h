@@ -20,6 +20,7 @@ struct CommandOption {
   bool required = false;
   std::vector<std::string> needs{};     ///< it is refused without these
   std::vector<std::string> excludes{};  ///< it is refused together with these
+  bool repeated = false;                ///< it takes several values
 };
 
 /// A verb with the verbs below it.

@@ -37,6 +37,7 @@ std::string option_heading(const CommandOption& option) {
     text += option.positional ? italic(name) : bold(name);
   }
   if (!option.positional && !option.value.empty()) text += fmt::format(" {}", italic(option.value));
+  if (option.repeated) text += " ...";
   return text;
 }
 
@@ -60,7 +61,9 @@ std::string synopsis_of(const CommandLeaf& leaf) {
   SC_ASSERT(leaf.verb != nullptr, "no verb is at '{}'", leaf.path);
   std::string text = fmt::format("{} [options]", bold(fmt::format("softcell {}", leaf.path)));
   for (const CommandOption& option : leaf.verb->options) {
-    if (option.positional) text += fmt::format(" {}", italic(option.names.front()));
+    if (!option.positional) continue;
+    const std::string name = italic(option.names.front()) + (option.repeated ? "..." : "");
+    text += option.required ? " " + name : fmt::format(" [{}]", name);
   }
   return text;
 }

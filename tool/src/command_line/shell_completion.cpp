@@ -20,6 +20,25 @@ std::string offer_words(const std::string& words) {
   return fmt::format("COMPREPLY=($(compgen -W '{}' -- \"$word\"))", words);
 }
 
+/// The verb's name and those below it, without options.
+CommandVerb names_only(const CommandVerb& verb) {
+  CommandVerb names{verb.name, verb.description, {}, {}};
+  for (const CommandVerb& below : verb.verbs) names.verbs.push_back(names_only(below));
+  return names;
+}
+
+/// The tree with all verbs below `help` too: behind it their names are allowed, and nothing else.
+CommandVerb with_verbs_behind_help(const CommandVerb& top) {
+  const CommandVerb names = names_only(top);
+  CommandVerb tree = top;
+  for (CommandVerb& verb : tree.verbs) {
+    if (verb.name != "help") continue;
+    std::erase_if(verb.options, [](const CommandOption& option) { return option.positional; });
+    verb.verbs = names.verbs;
+  }
+  return tree;
+}
+
 /// Whether the value is the name of a file. Nothing but the placeholder shows this.
 bool is_file(const CommandOption& option) {
   return option.value == "PROGRAM" || option.value.find("FILE") != std::string::npos;
@@ -53,6 +72,7 @@ std::string leaf_arm(const CommandLeaf& leaf) {
       values += fmt::format("        {}) {}; return ;;\n", joined(option.names, "|"), value_action(option));
   }
   std::string text = fmt::format("    '{}')\n", leaf.path);
+  if (!alone.empty()) text += fmt::format("      if [[ -n $positional ]]; then {}; return; fi\n", alone);
   if (!values.empty()) text += fmt::format("      case \"$before\" in\n{}      esac\n", values);
   if (!alone.empty()) text += fmt::format("      if [[ $word != -* ]]; then {}; return; fi\n", alone);
   return text + fmt::format("      {} ;;\n", offer_words(joined(words)));
@@ -98,15 +118,17 @@ _softcell_kernels() {{
 }}
 _softcell() {{
   # $verbs is not called $path: that is the search path of zsh, which runs this script, too.
-  local word="${{COMP_WORDS[COMP_CWORD]}}" before="${{COMP_WORDS[COMP_CWORD-1]}}" verbs='' longer i
+  local word="${{COMP_WORDS[COMP_CWORD]}}" before="${{COMP_WORDS[COMP_CWORD-1]}}" verbs='' positional='' longer i
   COMPREPLY=()
   for ((i = 1; i < COMP_CWORD; ++i)); do
-    if [[ -z $verbs && ${{COMP_WORDS[i]}} == help ]]; then continue; fi  # of the verbs behind it
     longer="${{verbs:+$verbs }}${{COMP_WORDS[i]}}"
     case "$longer" in
       {}) verbs="$longer" ;;
       *) break ;;
     esac
+  done
+  for (( ; i < COMP_CWORD; ++i)); do
+    if [[ ${{COMP_WORDS[i]}} == -- ]]; then positional=1; fi  # no option is behind it
   done
   if [[ $before == '=' ]]; then  # bash makes three words of --scene=arena, and of x=x.bin
     before="${{COMP_WORDS[COMP_CWORD-2]}}"
@@ -166,7 +188,6 @@ constexpr const char* kFishScript =
 function __softcell_at
     set -l path ''
     for word in (commandline -opc)[2..]
-        test -z "$path" -a "$word" = help; and continue  # of the verbs behind it
         set -l longer (string trim -- "$path $word")
         contains -- $longer {}; or break
         set path $longer
@@ -186,11 +207,12 @@ complete -c softcell -f
 }  // namespace
 
 std::string bash_completion(const CommandVerb& top) {
+  const CommandVerb tree = with_verbs_behind_help(top);
   std::vector<std::string> paths;
-  add_paths(top, "", paths);
+  add_paths(tree, "", paths);
   std::string arms;
-  add_branch_arms(top, "", arms);
-  for (const CommandLeaf& leaf : leaves_of(top)) arms += leaf_arm(leaf);
+  add_branch_arms(tree, "", arms);
+  for (const CommandLeaf& leaf : leaves_of(tree)) arms += leaf_arm(leaf);
   return fmt::format(kBashScript, joined(paths, "|"), arms);
 }
 
@@ -200,10 +222,11 @@ std::string zsh_completion(const CommandVerb& top) {
 }
 
 std::string fish_completion(const CommandVerb& top) {
+  const CommandVerb tree = with_verbs_behind_help(top);
   std::vector<std::string> paths;
-  add_paths(top, "", paths);
+  add_paths(tree, "", paths);
   std::string lines;
-  add_fish_lines(top, "", lines);
+  add_fish_lines(tree, "", lines);
   return fmt::format(kFishScript, joined(paths), lines);
 }
 

@@ -124,10 +124,9 @@ int run_demo_2d(const Demo2dOptions& options) {
           .image = demos::load_picture(*options.image), .cells = options.cells, .file = *options.image};
     demos::InputLog<2> log(options);
     const std::string usual = picture ? "picture" : "man";
-    demos::Scene2d scene =
-        load_with_picture(options.scene.value_or(log.scene_name().value_or(usual)), picture);
+    demos::Scene2d scene = load_with_picture(scene_to_load(options, 2, log.scene_name(), usual), picture);
     check_scene_kept(scene.files, options);
-    log.begin(scene);
+    log.begin(scene, options.contacts);
     return demos_of<Demo2d>(options, log, scene, all,
                             [](std::string_view name) { return demos::load_scene_2d(name); });
   });

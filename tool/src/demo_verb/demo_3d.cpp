@@ -249,12 +249,12 @@ int run_demo_3d(const Demo3dOptions& options) {
     const std::optional<demos::OwnModel> model = demos::load_own_model(options.model);
     demos::InputLog<3> log(options);
     const std::string usual = model ? "drop" : "arena";
-    demos::Scene scene = load_with_model(options.scene.value_or(log.scene_name().value_or(usual)), model);
+    demos::Scene scene = load_with_model(scene_to_load(options, 3, log.scene_name(), usual), model);
     if (model) scene.files.insert(scene.files.end(), model->files.begin(), model->files.end());
     check_scene_kept(scene.files, options);
     if (model && !options.quiet) print_notes(model->notes);
     if (!options.quiet) print_notes(scene.notes);
-    log.begin(scene);
+    log.begin(scene, options.contacts);
     return demos_of<Demo3d>(options, log, scene, all,
                             [](std::string_view name) { return demos::load_scene_3d(name); });
   });

@@ -135,6 +135,10 @@ void check_pictures(const DemoOptions& options) {
 
 /// Checks that no output replaces another one or a file that the demo reads.
 void check_files(const DemoOptions& options) {
+  refuse_standard_output({"--save-scene", options.save_scene});
+  if (options.save_scene && options.save_scene->extension() != ".toml")
+    throw UsageError(
+        fmt::format("--save-scene {}: give a file name that ends in .toml", options.save_scene->string()));
   std::vector<NamedFile> written = written_files(options);
   check_distinct(written);
   for (const NamedFile& file : {NamedFile{"--record", options.record}, {"--out", options.out}})
@@ -155,10 +159,6 @@ std::optional<std::filesystem::path> state_of(std::optional<std::filesystem::pat
 /// Refuses a scene that cannot be written now, not at the end of a long run.
 void check_saved_scene(const DemoOptions& options) {
   if (!options.save_scene) return;
-  refuse_standard_output({"--save-scene", options.save_scene});
-  if (options.save_scene->extension() != ".toml")
-    throw UsageError(
-        fmt::format("--save-scene {}: give a file name that ends in .toml", options.save_scene->string()));
   const base::WholeFile scene(*options.save_scene), state(*state_of(options.save_scene));
 }
 
@@ -175,6 +175,22 @@ void check_scene_kept(const std::vector<std::filesystem::path>& scene, const Dem
     check_kept({{"a file of the scene", file}}, written_files(options));
 }
 
+std::string scene_to_load(const DemoOptions& options, int dimension,
+                          const std::optional<std::string>& recorded, const std::string& usual) {
+  if (options.scene) return *options.scene;
+  if (!recorded) return usual;
+  SC_ASSERT(options.replay, "a recording of the scene {} has no name", *recorded);
+  // A recording may name any file, and is no reason to run a script.
+  const auto is_it = [&](const demos::SceneListing& listing) {
+    return listing.dimension == dimension && listing.name == *recorded;
+  };
+  if (std::ranges::any_of(demos::list_scenes(), is_it)) return *recorded;
+  throw std::runtime_error(
+      fmt::format("{}: a recording of the scene {}, which does not come with softcell; give its file with "
+                  "--scene",
+                  options.replay->string(), *recorded));
+}
+
 int run_demo(const DemoOptions& options, std::string_view verb, const LoadScenes& load) {
   if (!options.headless && (options.out || options.video)) {
     throw UsageError("--out and --video write pictures without a window: give --headless too");
@@ -184,6 +200,8 @@ int run_demo(const DemoOptions& options, std::string_view verb, const LoadScenes
         "--statistics is for pictures without a window: give --headless too; in a window S shows them");
   if (options.ui_scale && !(*options.ui_scale >= 0.5f && *options.ui_scale <= 4))
     throw UsageError(fmt::format("--ui-scale {}: give a number from 0.5 to 4", *options.ui_scale));
+  if (options.ui_scale && options.headless)
+    throw UsageError("--ui-scale is for text and menus in a window: leave out --headless");
   check_pictures(options);
   check_files(options);
   const InterruptGuard guard;  // before the first file is opened, so that no part of one is left

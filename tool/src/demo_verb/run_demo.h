@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <stdexcept>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -28,6 +29,12 @@ std::vector<NamedFile> written_files(const DemoOptions& options);
 /// @param scene  the files that it was read from
 /// @throws UsageError  an output would replace one of them.
 void check_scene_kept(const std::vector<std::filesystem::path>& scene, const DemoOptions& options);
+
+/// The name or file of the scene that the options ask for: in a replay without --scene the recorded one.
+/// @param recorded  the name in the recording; none: this is no replay   @param usual  without either
+/// @throws std::runtime_error  the recorded scene does not come with softcell
+std::string scene_to_load(const DemoOptions& options, int dimension,
+                          const std::optional<std::string>& recorded, const std::string& usual);
 
 /// Loads the scene that the options ask for; with `all` also the scenes of the same dimension that come with softcell. The demo begins with
 /// the first one.

@@ -2,7 +2,9 @@
 #include "softcell/base/assert.h"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <spawn.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -62,13 +64,13 @@ std::vector<char*> pointers_to(std::vector<std::string>& texts) {
   return pointers;
 }
 
-/// While the object lives, only the child receives the interrupts of the terminal.
+/// While the object lives, the terminal's Ctrl-\ ends only the child, and so does Ctrl-C unless it is ours, too.
 class InterruptsLeftToTheChild {
  public:
-  InterruptsLeftToTheChild() {
+  explicit InterruptsLeftToTheChild(Interrupts interrupts) {
     struct sigaction ignore {};
     ignore.sa_handler = SIG_IGN;
-    sigaction(SIGINT, &ignore, &interrupt_);
+    sigaction(SIGINT, interrupts == Interrupts::kOfTheProgram ? &ignore : nullptr, &interrupt_);
     sigaction(SIGQUIT, &ignore, &quit_);
   }
   ~InterruptsLeftToTheChild() {
@@ -83,10 +85,28 @@ class InterruptsLeftToTheChild {
   }, quit_{};
 };
 
+/// Returns when the child has ended. Until then it gets a SIGTERM for each signal that the guard notes.
+void wait_for(pid_t child, const InterruptGuard& guard) {
+  SC_ASSERT(child > 0, "the process {} is no child", child);
+  pollfd end{static_cast<int>(syscall(SYS_pidfd_open, child, 0)), POLLIN, 0};
+  if (end.fd < 0) return;  // no such call in this kernel: waitpid() waits
+  // Held back but within ppoll(), so that none arrives between the question and the wait.
+  sigset_t noted, usual;
+  sigemptyset(&noted);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&noted, signal);
+  sigprocmask(SIG_BLOCK, &noted, &usual);
+  do {
+    if (guard.interrupted()) kill(child, SIGTERM);
+  } while (ppoll(&end, 1, nullptr, &usual) < 0 && errno == EINTR);
+  sigprocmask(SIG_SETMASK, &usual, nullptr);
+  close(end.fd);
+}
+
 }  // namespace
 
 ChildEnd run_child(const std::vector<std::string>& words, const std::map<std::string, std::string>& variables,
-                   const std::filesystem::path& output, int input) {
+                   const InterruptGuard& guard, Interrupts interrupts, const std::filesystem::path& output,
+                   int input) {
   SC_ASSERT(!words.empty(), "a child process of {} variables runs nothing", variables.size());
   std::vector<std::string> arguments = words, environment = environment_with(variables);
   posix_spawn_file_actions_t actions;
@@ -101,10 +121,11 @@ ChildEnd run_child(const std::vector<std::string>& words, const std::map<std::st
   sigemptyset(&usual);
   sigaddset(&usual, SIGINT);
   sigaddset(&usual, SIGQUIT);
+  sigaddset(&usual, SIGXFSZ);  // main() ignores it
   posix_spawnattr_setsigdefault(&attributes, &usual);
   posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF);
 
-  const InterruptsLeftToTheChild here;
+  const InterruptsLeftToTheChild here(interrupts);
   pid_t child = 0;
   const int error = posix_spawnp(&child, arguments.front().c_str(), &actions, &attributes,
                                  pointers_to(arguments).data(), pointers_to(environment).data());
@@ -112,6 +133,7 @@ ChildEnd run_child(const std::vector<std::string>& words, const std::map<std::st
   posix_spawnattr_destroy(&attributes);
   if (error != 0)
     throw std::runtime_error("cannot run " + words.front() + ": " + why_not_run(words.front(), error));
+  wait_for(child, guard);
   int status = 0;
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
@@ -138,7 +160,9 @@ std::vector<std::string> ScratchFolder::texts(const std::string& extension) cons
   for (const auto& file : std::filesystem::directory_iterator(path_)) files.insert(file.path());
   std::vector<std::string> texts;
   for (const std::filesystem::path& file : files)
-    if (file.extension() == extension) texts.push_back(text_of(file));
+    // A process that was ended while it wrote has left a hidden file.
+    if (file.extension() == extension && !file.filename().string().starts_with('.'))
+      texts.push_back(text_of(file));
   return texts;
 }
 

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "verb/interrupt.h"
+
 namespace softcell::tool {
 
 struct ChildEnd {
@@ -15,13 +17,20 @@ struct ChildEnd {
   int signal = 0;  ///< 0: no signal has ended it
 };
 
-/// Runs a program and waits for its end. It gets the terminal's signals, which do not end the caller meanwhile.
+/// Who gets the terminal's Ctrl-C while a program runs.
+enum class Interrupts {
+  kOfTheProgram,         ///< the program alone
+  kOfTheProgramAndOurs,  ///< the guard notes them, too
+};
+
+/// Runs a program and waits for its end. It gets the terminal's signals; when the guard notes one, the program also gets SIGTERM.
 /// @param words       the program, searched for as a shell does, and its arguments; not empty.
 /// @param variables   are set in its environment; an empty value removes the variable.
 /// @param output      a file that receives its standard output; empty: it shares the caller's.
 /// @param input       the descriptor that it reads as its standard input.
 /// @throws std::runtime_error  the program cannot be started; the message says why.
 ChildEnd run_child(const std::vector<std::string>& words, const std::map<std::string, std::string>& variables,
+                   const InterruptGuard& guard, Interrupts interrupts,
                    const std::filesystem::path& output = {}, int input = STDIN_FILENO);
 
 /// A new folder among the temporary files. The destructor removes it with its contents.

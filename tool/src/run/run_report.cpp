@@ -65,7 +65,7 @@ std::string how_it_ended(const ChildEnd& end) {
 }  // namespace
 
 ProgramRun program_run(const ChildEnd& end, std::string output, const std::vector<std::string>& reports) {
-  ProgramRun run{end, std::move(output), {}, nullptr};
+  ProgramRun run{end, std::move(output), {}, nullptr, reports.size(), {}};
   for (const std::string& text : reports) {
     nlohmann::json report = nlohmann::json::parse(text);
     if (!report.at("whole").get<bool>()) {

@@ -16,7 +16,9 @@ struct ProgramRun {
   std::string output;  ///< if it was collected
   /// The messages of findings that libspe2 had no time to print, because the process ended without its exit handlers.
   std::vector<std::string> unsaid_findings;
-  nlohmann::json report;  ///< of all its processes together; null: no process has made an SPE context
+  nlohmann::json report;      ///< of all its processes together; null: no process has made an SPE context
+  std::size_t processes = 0;  ///< of the program, that have made SPE contexts
+  std::string trace = {};     ///< empty: none is wanted, or the program has written none
 
   bool has_findings() const;
   /// "ended with status 0"

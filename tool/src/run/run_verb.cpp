@@ -15,8 +15,10 @@
 #include "softcell/base/assert.h"
 #include "softcell/base/whole_file.h"
 #include "verb/exit_status.h"
+#include "verb/interrupt.h"
 #include "verb/output_files.h"
 #include "verb/progress_bar.h"
+#include "verb/verb_files.h"
 
 namespace softcell::tool {
 namespace {
@@ -57,24 +59,36 @@ std::map<std::string, std::string> variables_of(const RunOptions& options) {
       {"SOFTCELL_DMA", options.dma},
       {"SOFTCELL_TURNS", options.turns ? "1" : "0"},
       {"SOFTCELL_CHECKED", options.checked ? "1" : "0"},
-      {"SOFTCELL_DEADLINE_MS", std::to_string(deadline_of(options))},
-      {"SOFTCELL_TRACE", options.trace ? std::filesystem::absolute(*options.trace).string() : ""}};
+      {"SOFTCELL_DEADLINE_MS", std::to_string(deadline_of(options))}};
   if (const std::string libraries = preloaded(options); !libraries.empty())
     variables["LD_PRELOAD"] = libraries;
   return variables;
 }
 
-/// @param input  of the program, whose output is collected; null: both are those of this process.
-ProgramRun run_once(const RunOptions& options, KeptInput* input = nullptr) {
+/// A file that an option asks for.
+struct Output {
+  explicit Output(const NamedFile& named) : files({named}), file(files.open(named.file)) {}
+
+  OutputFiles files;
+  base::WholeFile* file;  // null: it asks for none
+};
+
+/// @param input  of the program, whose output is collected, and whose interrupts are ours, too; null: all are those of this process.
+ProgramRun run_once(const RunOptions& options, const InterruptGuard& guard, KeptInput* input = nullptr) {
   SC_ASSERT(!options.words.empty(), "a run of no program under {}", options.dma);
   const ScratchFolder folder;
-  const std::string output = "output";
+  const std::string output = "output", trace = "trace";
   auto variables = variables_of(options);
   variables["SOFTCELL_REPORT"] = folder.path() / "%p.json";
+  // softcell writes the user's file itself, so that one that cannot be written is refused before the run.
+  variables["SOFTCELL_TRACE"] = options.trace ? folder.path() / trace : std::filesystem::path();
   const ChildEnd end = input == nullptr
-                           ? run_child(options.words, variables)
-                           : run_child(options.words, variables, folder.path() / output, input->begin_run());
-  return program_run(end, folder.text(output), folder.texts(".json"));
+                           ? run_child(options.words, variables, guard, Interrupts::kOfTheProgram)
+                           : run_child(options.words, variables, guard, Interrupts::kOfTheProgramAndOurs,
+                                       folder.path() / output, input->begin_run());
+  ProgramRun run = program_run(end, folder.text(output), folder.texts(".json"));
+  run.trace = folder.text(trace);
+  return run;
 }
 
 nlohmann::ordered_json document(const RunOptions& options, const ProgramRun& run) {
@@ -84,20 +98,31 @@ nlohmann::ordered_json document(const RunOptions& options, const ProgramRun& run
           {"report", run.report}};
 }
 
-int run_one(const RunOptions& options, OutputFiles& files, base::WholeFile* json) {
-  const ProgramRun run = run_once(options);
+int run_one(const RunOptions& options, const InterruptGuard& guard, Output& json, Output& trace) {
+  const ProgramRun run = run_once(options, guard);
   for (const std::string& finding : run.unsaid_findings)
     fmt::print(stderr, "softcell: finding: {}\n", finding);
   fmt::print(stderr, "softcell: {} {}; {}\n", options.words.front(), run.ending(), run.summary());
-  if (json != nullptr) write_json(*json, document(options, run));
-  files.commit();
+  const bool lacks_trace = trace.file != nullptr && run.trace.empty();
+  if (trace.file != nullptr && !lacks_trace) {
+    trace.file->write(run.trace);
+    trace.file->finish();
+  }
+  if (json.file != nullptr) write_json(*json.file, document(options, run));
+  json.files.commit();
+  if (!lacks_trace) trace.files.commit();
+  if (trace.file != nullptr && !lacks_trace && run.processes > 1)
+    fmt::print(stderr, "softcell: '{}' has the trace of the last of {} processes\n", options.trace->string(),
+               run.processes);
   const int status = run.exit_status();
-  if (!options.trace || !run.report.is_null() || status != 0) return status;
-  fmt::print(stderr, "softcell: '{}' is not written: a trace shows SPE contexts\n", options.trace->string());
-  return 1;
+  if (!lacks_trace || status != 0) return status;
+  fmt::print(
+      stderr, "softcell: '{}' is not written: {}\n", options.trace->string(),
+      run.report.is_null() ? "a trace shows SPE contexts" : "the program has ended before it wrote a trace");
+  return kExitFailed;
 }
 
-int run_many(const RunOptions& options, OutputFiles& files, base::WholeFile* json) {
+int run_many(const RunOptions& options, const InterruptGuard& guard, Output& json) {
   RunOptions seeded = options;
   seeded.turns = true;
   SC_ASSERT(options.seeds > 0, "{} runs under {} seeds", options.words.size(), options.seeds);
@@ -108,9 +133,13 @@ int run_many(const RunOptions& options, OutputFiles& files, base::WholeFile* jso
   bool differs = false;
   {
     ProgressBar bar("run", options.seeds, options.quiet);
-    while (seed < options.seeds && !differs) {
+    while (seed < options.seeds && !differs && !guard.interrupted()) {
       seeded.dma = fmt::format("random:{}", ++seed);
-      ProgramRun run = run_once(seeded, &input);
+      ProgramRun run = run_once(seeded, guard, &input);
+      if (guard.interrupted()) {  // perhaps during the run
+        --seed;
+        break;
+      }
       if (seed == 1) {
         first = std::move(run);
       } else if (const auto difference = first.difference(run)) {
@@ -121,6 +150,10 @@ int run_many(const RunOptions& options, OutputFiles& files, base::WholeFile* jso
       if (first.end.signal != 0 && first.report.is_null()) break;  // somebody wants the run to end
       if (!options.quiet) bar.show(seed);
     }
+  }
+  if (guard.interrupted() && !differs) {
+    fmt::print(stderr, "softcell: interrupted; {} of {} seeds gave the same outcome\n", seed, options.seeds);
+    return kExitInterrupted;
   }
   fmt::print("{}", first.output);
   if (differs && first.report.is_null()) {
@@ -135,13 +168,13 @@ int run_many(const RunOptions& options, OutputFiles& files, base::WholeFile* jso
     fmt::print(stderr, "softcell: {} seeds: {} {} under each, with the same output; {}\n", seed,
                options.words.front(), first.ending(), first.summary());
   }
-  if (json != nullptr) {
+  if (json.file != nullptr) {
     nlohmann::ordered_json all = document(options, first);
     all["seeds"] = seed;
     all["same"] = !differs;
-    write_json(*json, all);
+    write_json(*json.file, all);
   }
-  files.commit();
+  json.files.commit();
   return differs ? kExitFailed : first.exit_status();
 }
 
@@ -197,9 +230,14 @@ int run_program(const RunOptions& options) {
     throw UsageError("--trace with --seeds: trace one of the runs, with --dma random:SEED --turns");
   if (options.seeds != 0 && (options.dma_is_given || options.dma != "eager"))
     throw UsageError("--dma with --seeds: the seeds are those of --dma random:1 to random:SEEDS");
-  OutputFiles files({{"--json", options.json}});
-  base::WholeFile* const json = files.open(options.json);
-  return options.seeds == 0 ? run_one(options, files, json) : run_many(options, files, json);
+  const NamedFile json_file{"--json", options.json}, trace_file{"--trace", options.trace};
+  check_distinct({json_file, trace_file});
+  // A name without a slash is searched for in the folders of PATH.
+  if (const std::string& program = options.words.front(); program.find('/') != std::string::npos)
+    check_kept({{"the program", program}}, {json_file, trace_file});
+  const InterruptGuard guard;  // before the first file is opened, so that no part of one is left
+  Output json(json_file), trace(trace_file);
+  return options.seeds == 0 ? run_one(options, guard, json, trace) : run_many(options, guard, json);
 }
 
 std::unique_ptr<Verb> run_verb() { return std::make_unique<RunVerb>(); }

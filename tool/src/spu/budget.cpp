@@ -55,7 +55,7 @@ void print_table(const std::vector<BudgetRow>& rows) {
   fmt::print("{:<{}} {:>7} {:>7} {:>7} {:>7} {:>7} {:>10} {:>7} {:>6} {:>8}{}\n", "kernel", width, "text",
              "rodata", "data", "bss", "stack", "stack used", "total", "share", "budget",
              any_on_spu ? " | SPU: text  stack used   total  share  cycles" : "");
-  bool any_checked = false;
+  bool any_stack_for_checks = false;
   const auto stack = [](const std::optional<SampleNeeds>& needs) {
     return needs ? std::to_string(needs->stack) : "-";
   };
@@ -73,9 +73,9 @@ void print_table(const std::vector<BudgetRow>& rows) {
         fmt::print("  {:.0f} a {}", *on_spu->needs->cycles, on_spu->needs->piece);
     }
     fmt::print("\n");
-    any_checked = any_checked || kernel.checked;
+    any_stack_for_checks = any_stack_for_checks || stack_for_checks(kernel) != 0;
   }
-  if (any_checked)
+  if (any_stack_for_checks)
     fmt::print(
         "\nThe stack of an instrumented flavour is {} bytes larger than the kernel declares, for the checks; "
         "its budget is the whole local store.\n",

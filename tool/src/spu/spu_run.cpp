@@ -22,6 +22,8 @@
 #include "kernel_runs/kernel_timing.h"
 #include "softcell/ls_sim/trace.h"
 #include "spu_verbs.h"
+#include "verb/exit_status.h"
+#include "verb/interrupt.h"
 #include "verb/output_files.h"
 
 namespace softcell::tool {
@@ -75,17 +77,23 @@ int run_spu_run(const SpuRunOptions& options) {
   if (options.timing) timing.emplace(task.spes);
 
   const ls_sim::HostCalls host_calls = host_calls_of(options);
+  const InterruptGuard guard;
   const KernelRun run = run_kernel(memory, image, buffers, task,
                                    {.schedule = options.schedule,
                                     .clock = options.clock,
                                     .timing = timing ? &*timing : nullptr,
                                     .debugger = coverage.get(),
                                     .trace = trace ? &*trace : nullptr,
-                                    .host_calls = options.host_calls ? &host_calls : nullptr});
+                                    .host_calls = options.host_calls ? &host_calls : nullptr,
+                                    .interrupted = [&] { return guard.interrupted(); }});
 
   const int status = exit_status(image, run);
   // This comes before files that may fail to be written, so that the user learns in any case what the kernel did.
   print_statistics(image, run);
+  if (guard.interrupted()) {
+    fmt::print(stderr, "softcell: interrupted; no file is written\n");
+    return kExitInterrupted;
+  }
   if (timing) print_timing(image, *timing);
   print_problems(image, run);
   if (status == 0) buffers.write_files(files);

@@ -62,7 +62,7 @@ class SpuVerbs final : public Verb {
                 "and 0x2101)");
     r->add_option("--folder", run_.folder,
                   "With --host-calls: a folder in which the program may open, create and remove files")
-        ->type_name("FOLDER")
+        ->type_name("DIR")
         ->needs("--host-calls");
     r->add_flag(
         "--timing", run_.timing,
@@ -131,7 +131,7 @@ class SpuVerbs final : public Verb {
                                      "targets and hints");
     d->add_option("PROGRAM", disasm_.task.image, "An executable that a compiler for the SPU has made")
         ->required()
-        ->type_name("KERNEL");
+        ->type_name("FILE");
     add_function_option(*d, disasm_.function);
     d->add_flag("--schedule", disasm_.with_schedule,
                 "Say in which cycle and which pipe each instruction issues");

@@ -60,7 +60,7 @@ class SoftBody {
   SoftBody& operator=(const SoftBody& other);
   /// Moves the state out of the other, which can only be destroyed afterwards.
   SoftBody(SoftBody&& other) noexcept;
-  /// Exchanges the states of both bodies. Increments revision() and resets() as a copying assignment does.
+  /// Exchanges the states of both bodies. Increments revision() and resets() of both, as a copying assignment does.
   SoftBody& operator=(SoftBody&& other) noexcept;
   ~SoftBody();
 

@@ -47,6 +47,10 @@ class Window {
   /// Shows the renderer's last frame, stretched if its size is not the window's. @pre context() is current
   void show(Renderer& renderer);
 
+  /// Whether the display has gone, as when an X server ends. Then neither this object nor what show() uses may be destroyed: the display's
+  /// library may never return from a call.
+  bool lost() const;
+
   SDL_Window* sdl();
 
  private:
