@@ -253,6 +253,18 @@ TEST_F(CheckerTest, AStatusThatDoesNotWaitSaysNothingByBeingThere) {
   EXPECT_EQ(rules(), std::vector<std::string>{"load-in-flight"});
 }
 
+TEST_F(CheckerTest, AVariableOfAFunctionThatHasReturnedIsNoBuffer) {
+  const std::uint32_t variable = dma::kLocalStoreBytes - 384;
+  store(variable, 128);
+  issue(MfcOpcode::put, variable, kEa, 128, 3);
+  checker_.on_access({{buffer_}, 4, true, engine_.at, {variable - 64}});
+  checker_.on_access({{buffer_}, 4, true, engine_.at, {variable + 64}});
+  EXPECT_EQ(rules(), Texts{}) << "its function runs, and calls others";
+  checker_.on_access({{buffer_}, 4, true, engine_.at, {variable + 128}});
+  checker_.on_access({{buffer_}, 4, true, engine_.at, {variable + 128}});
+  EXPECT_EQ(rules(), Texts{"store-in-flight"}) << "once";
+}
+
 TEST_F(CheckerTest, TheFindingSaysWhichCommandAndWhereItWasIssued) {
   issue(MfcOpcode::get, buffer_, kEa, 128, 3);
   load(buffer_ + 16, 4);

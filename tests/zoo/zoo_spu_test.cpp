@@ -34,6 +34,8 @@ const std::map<std::string, std::string> kOtherwise = {
     {"store_behind_the_last_object", "a word is stored by a load first, which is found: load-never-written"},
     {"store_into_a_constant", "the constant is in no segment of its own: not found yet"},
     {"store_into_a_get", "a word is stored by a load first, which is found: load-in-flight"},
+    {"put_from_a_function_that_returned",
+     "nobody knows where the stack of an SPU program ends: only a store there is found"},
     {"stack_too_small", "the build for the SPU refuses it: its linker counts the stack"},
     {"tag_invalid", "libgcc's tag manager has a static constructor"},
     {"tag_manager", "libgcc's tag manager has a static constructor"},

@@ -58,6 +58,7 @@ void Checker::begin_run(const KernelImage& image, const StackRange& stack, bool 
   in_flight_.clear();
   tag_mask_ = tags_issued_ = 0;
   is_waiting_ = false;
+  stack_is_in_flight_ = false;
   asked_at_ = 0;
   status_unread_.reset();
   reservation_.reset();
@@ -183,6 +184,7 @@ void Checker::on_access(const Access& access) {
   SC_ASSERT(objects_.has_value(), "a {} of {} bytes at {} before a run", access.is_store ? "store" : "load",
             access.bytes, access.lsa);
   check_code(access.instruction);
+  check_frames(access.instruction, access.stack_pointer.value);
   // An SPU loads and stores the whole quadword in which a variable lies, and its neighbours with it.
   const std::string trespass =
       runs_spu_program() ? ""
@@ -267,6 +269,7 @@ void Checker::check_load(const Access& access) {
 
 ChannelReply Checker::issue(const dma::MfcCommand& command) {
   check_code(to_.engine.position());
+  check_frames(to_.engine.position(), to_.engine.stack_pointer().value);
   CommandInFlight in_flight{
       .command = command,
       .issued_at = to_.engine.position(),
@@ -294,8 +297,12 @@ ChannelReply Checker::issue(const dma::MfcCommand& command) {
 void Checker::check_ranges(CommandInFlight& command) {
   SC_ASSERT(objects_.has_value(), "command {} is checked before a run", command.number);
   if (command.moves_local_store()) {
-    for (const MovedRange& range : command.ranges)
+    for (const MovedRange& range : command.ranges) {
       check_local_range(command.command, range, command.writes_local_store);
+      if (runs_spu_program() || !objects_->in_stack(range.lsa)) continue;
+      const bool is_used = range.lsa >= to_.engine.stack_pointer().value;  // else that was said
+      (is_used ? stack_is_in_flight_ : command.frame_was_left) = true;
+    }
   }
   check_overlaps(command);
 }
@@ -373,6 +380,26 @@ void Checker::end_reservation(const dma::MfcCommand& by) {
   }
 }
 
+/// A variable of a function that has returned lies below the stack pointer: what is called next stores there.
+void Checker::check_frames(Address here, std::uint32_t stack_pointer) {
+  if (!stack_is_in_flight_) return;
+  stack_is_in_flight_ = false;
+  for (CommandInFlight& command : in_flight_.all()) {
+    for (const MovedRange& range : command.ranges) {
+      if (command.frame_was_left || !objects_->in_stack(range.lsa)) continue;
+      if (range.lsa + range.bytes > stack_pointer) {
+        stack_is_in_flight_ = true;
+        continue;
+      }
+      command.frame_was_left = true;
+      report(Rule::kStoreInFlight, here,
+             "the function that has these " + std::to_string(range.bytes) +
+                 " bytes on the stack has returned, and the next one stores there; in flight: " +
+                 describe(command));
+    }
+  }
+}
+
 // ---- channels
 
 ChannelReply Checker::count(std::uint32_t channel) {
@@ -385,6 +412,7 @@ ChannelReply Checker::count(std::uint32_t channel) {
 
 ChannelReply Checker::write(std::uint32_t channel, std::uint32_t value) {
   check_code(to_.engine.position());
+  check_frames(to_.engine.position(), to_.engine.stack_pointer().value);
   ChannelReply reply = to_.channels.write(channel, value);
   if (reply.fault) return reply;
   if (channel == static_cast<std::uint32_t>(Channel::kMfcWrTagMask)) tag_mask_ = value;
@@ -413,6 +441,7 @@ void Checker::on_tag_status() {
 
 ChannelReply Checker::read(std::uint32_t channel) {
   check_code(to_.engine.position());
+  check_frames(to_.engine.position(), to_.engine.stack_pointer().value);
   ChannelReply reply = to_.channels.read(channel);
   if (reply.fault) return reply;
   if (channel == static_cast<std::uint32_t>(Channel::kMfcRdTagStat)) {

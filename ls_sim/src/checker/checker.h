@@ -137,6 +137,7 @@ class Checker final : public ChannelPort, public AccessObserver {
   void check_line_command(const CommandInFlight& line);
   void check_local_range(const dma::MfcCommand& command, const MovedRange& range, bool is_get);
   void end_reservation(const dma::MfcCommand& by);
+  void check_frames(Address here, std::uint32_t stack_pointer);
   void complete(std::uint32_t tags);
   void on_tag_update(std::uint32_t condition);
   void on_tag_status();
@@ -166,7 +167,8 @@ class Checker final : public ChannelPort, public AccessObserver {
   UnsyncedBytes unsynced_;
   CommandsInFlight in_flight_;
   std::uint32_t tag_mask_ = 0;
-  std::uint32_t tags_issued_ = 0;  ///< since each was last waited for
+  std::uint32_t tags_issued_ = 0;    ///< since each was last waited for
+  bool stack_is_in_flight_ = false;  ///< a command may move variables of functions
   bool stack_overflow_known_ = false;
   bool is_waiting_ = false;     ///< the open tag-status request is one that waits
   std::uint32_t awaited_ = 0;   ///< the tags that it waits for, all of them; 0: it waits for any of several

@@ -34,6 +34,8 @@ struct CommandInFlight {
   dma::LocalStoreAddress cursor = {};  ///< where the next one's bytes lie
   bool has_stalled = false;            ///< and waits for its acknowledgement
 
+  bool frame_was_left = false;  ///< it moves a variable of a function that has returned
+
   /// Numbers of the commands that complete before this one starts.
   std::vector<std::uint64_t> behind = {};
 

@@ -379,7 +379,9 @@ SC_C_INLINE void softcell_halt_if(int condition) {
 #define spu_readchcnt(channel) (softcell_call_gate(softcell_count, SC_C_CONSTANT(channel, 0, 127), 0))
 #define spu_writech(channel, value) \
   (softcell_write_channel(SC_C_CONSTANT(channel, 0, 127), (uint32_t)(value)))
-#define spu_writechqw(channel, value) spu_writech(channel, spu_extract((vec_uint4)(value), 0))
+/* Of a vector of any lanes: its first word. */
+#define spu_writechqw(channel, value) \
+  spu_writech(channel, ((vec_uint4)softcell_regroup((vec_uchar16)(value), (sizeof(value)[0] - 1) ^ 3))[0])
 #define spu_stop(code) ((void)softcell_call_gate(softcell_stop, 0, SC_C_CONSTANT(code, 0, 0x3FFF)))
 #define spu_sync() ((void)softcell_call_gate(softcell_sync, 0, 0))
 #define spu_sync_c() spu_sync()

@@ -131,10 +131,20 @@ static void operands(void) {
   CHECK(((vec_uchar16)words)[5] - 1 == 4 && ((vec_float4)(words))[0] > 0);
 }
 
+/* In a macro of the SDK. */
+static void channels(void) {
+  const vec_uchar16 bytes = {0, 0, 0, 1, 2, 3};
+  spu_writechqw(SPU_WrEventMask, bytes);
+  CHECK(spu_readch(SPU_RdEventMask) == 1);
+  spu_writechqw(SPU_WrEventMask, ((vec_uint4){2, 3, 4, 5}));
+  CHECK(spu_readch(SPU_RdEventMask) == 2);
+}
+
 int main(void) {
   names();
   types_of_values();
   members();
   operands();
+  channels();
   return failures;
 }
