@@ -112,7 +112,7 @@ bool is_under_way(const b2Body& body) {
 }
 
 /// Whether nothing moves a body but the program by its place. Joints on it see where it is.
-bool may_be_moved_by_hand(const b2Body& body) {
+bool may_be_moved_by_place(const b2Body& body) {
   return body.GetType() != b2_dynamicBody && body.GetLinearVelocity().LengthSquared() == 0 &&
          body.GetAngularVelocity() == 0 && body.GetJointList() == nullptr;
 }
@@ -177,22 +177,22 @@ void Box2dObstacles::begin(b2World& world, float step, float layer) {
   moving_.clear();
   for (b2Body* body = world.GetBodyList(); body != nullptr; body = body->GetNext())
     if (is_under_way(*body)) moving_.push_back(body);
-  find_moved_by_hand();
+  find_moved_by_place();
 }
 
 /// Moved bodies lie where the program has put them in Box2D's tree, too.
-void Box2dObstacles::find_moved_by_hand() {
+void Box2dObstacles::find_moved_by_place() {
   moved_.clear();
   if (wanted_ != Fixtures::kSolid) return;
   for (b2Body* body = world_->GetBodyList(); body != nullptr; body = body->GetNext()) {
     KnownBody& known = known_bodies_.at(body);
-    if (!may_be_moved_by_hand(*body)) {
+    if (!may_be_moved_by_place(*body)) {
       known.pose.reset();
       continue;
     }
     const Pose pose = as_pose(body->GetTransform());
     if (known.pose && !(*known.pose == pose)) {
-      if (const auto motion = moved_by_hand(*known.pose, pose, size_of(*body), step_)) {
+      if (const auto motion = moved_by_place(*known.pose, pose, size_of(*body), step_)) {
         moved_.push_back({body, *motion});
         moving_.push_back(body);
       }
@@ -201,13 +201,13 @@ void Box2dObstacles::find_moved_by_hand() {
   }
 }
 
-const MovedByHand* Box2dObstacles::moved_by_hand_of(const b2Body& body) const {
+const MovedByPlace* Box2dObstacles::moved_by_place_of(const b2Body& body) const {
   const auto found = std::ranges::find(moved_, &body, &Moved::body);
   return found == moved_.end() ? nullptr : &found->motion;
 }
 
 b2Transform Box2dObstacles::pose_of(const b2Body& body) const {
-  const MovedByHand* const moved = moved_by_hand_of(body);
+  const MovedByPlace* const moved = moved_by_place_of(body);
   if (moved == nullptr) return body.GetTransform();
   b2Transform pose;
   pose.p = {moved->from.position.x(), moved->from.position.y()};
@@ -225,7 +225,7 @@ VelocityGain Box2dObstacles::gain_of(const b2Body& body) const {
 b2AABB Box2dObstacles::box_of_step(const b2Fixture& fixture, int child) const {
   b2AABB box = fixture.GetAABB(child);
   const b2Body& body = *fixture.GetBody();
-  const MovedByHand* const moved = moved_by_hand_of(body);
+  const MovedByPlace* const moved = moved_by_place_of(body);
   if (moved == nullptr && !is_under_way(body)) return box;
   const VelocityGain gain = gain_of(body);
   // It has come from there already.
@@ -329,7 +329,7 @@ std::uint32_t Box2dObstacles::rigid_of(b2Body& body) {
   const VelocityGain gain = gain_of(body);
   rigid.velocity = lifted(body.GetLinearVelocity() + gain.linear);
   rigid.spin = {0, 0, body.GetAngularVelocity() + gain.angular};
-  if (const MovedByHand* const moved = moved_by_hand_of(body)) {
+  if (const MovedByPlace* const moved = moved_by_place_of(body)) {
     rigid.centre = moved->from.position;
     rigid.velocity = moved->velocity;
     rigid.spin = moved->spin;

@@ -13,7 +13,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "ppu/surfaces/moved_by_hand.h"
+#include "ppu/surfaces/moved_by_place.h"
 #include "ppu/surfaces/obstacle.h"
 #include "softcell/soft_bodies/contact.h"
 
@@ -95,13 +95,13 @@ class Box2dObstacles {
   /// A body that the program has moved by its place since the last step.
   struct Moved {
     const b2Body* body;
-    MovedByHand motion;
+    MovedByPlace motion;
   };
   class Collector;
 
   void number_bodies();
-  void find_moved_by_hand();
-  const MovedByHand* moved_by_hand_of(const b2Body& body) const;
+  void find_moved_by_place();
+  const MovedByPlace* moved_by_place_of(const b2Body& body) const;
   VelocityGain gain_of(const b2Body& body) const;
   b2AABB box_of_step(const b2Fixture& fixture, int child) const;
   int face_before(const Found& found, const Bounds<3>& box, const Eigen::Vector2f& middle) const;

@@ -213,7 +213,7 @@ btVector3 where_it_moves(const btVector3& change, const btVector3& factor) {
 }
 
 /// Whether nothing moves an object but the program by its place. Joints on it see where it is.
-bool may_be_moved_by_hand(const btCollisionObject& object) {
+bool may_be_moved_by_place(const btCollisionObject& object) {
   const btRigidBody* const body = btRigidBody::upcast(&object);
   if (body == nullptr) return !object.isKinematicObject();
   return body->isStaticObject() && !body->isKinematicObject() && body->getNumConstraintRefs() == 0;
@@ -260,7 +260,7 @@ std::vector<T>& next_list(std::vector<std::vector<T>>& lists, std::size_t& used)
 }  // namespace
 
 BulletObstacles::Way BulletObstacles::way_of(const btCollisionObject& object) const {
-  if (const MovedByHand* const moved = moved_by_hand_of(object))
+  if (const MovedByPlace* const moved = moved_by_place_of(object))
     return {step_ * moved->velocity, step_ * moved->spin.norm() * reach_of(*object.getCollisionShape())};
   const btRigidBody* const body = btRigidBody::upcast(&object);
   if (body == nullptr || !is_under_way(object)) return {};
@@ -279,13 +279,13 @@ Bounds<3> BulletObstacles::behind(const Bounds<3>& box, const Way& way) {
   return ahead(box, {-way.along, way.turn});
 }
 
-const MovedByHand* BulletObstacles::moved_by_hand_of(const btCollisionObject& object) const {
+const MovedByPlace* BulletObstacles::moved_by_place_of(const btCollisionObject& object) const {
   const auto found = std::ranges::find(moved_, &object, &Moved::object);
   return found == moved_.end() ? nullptr : &found->motion;
 }
 
 btTransform BulletObstacles::pose_of(const btCollisionObject& object) const {
-  const MovedByHand* const moved = moved_by_hand_of(object);
+  const MovedByPlace* const moved = moved_by_place_of(object);
   if (moved == nullptr) return object.getWorldTransform();
   const Matrix3f& m = moved->from.rotation;
   const btMatrix3x3 rotation(m(0, 0), m(0, 1), m(0, 2), m(1, 0), m(1, 1), m(1, 2), m(2, 0), m(2, 1), m(2, 2));
@@ -293,7 +293,7 @@ btTransform BulletObstacles::pose_of(const btCollisionObject& object) const {
 }
 
 /// Objects change their places in the world's list when one is removed: they are then seen for the first time again.
-void BulletObstacles::find_moved_by_hand() {
+void BulletObstacles::find_moved_by_place() {
   moved_.clear();
   if (role_ != Objects::kSolid) return;
   const btCollisionObjectArray& objects = world_->getCollisionObjectArray();
@@ -301,14 +301,14 @@ void BulletObstacles::find_moved_by_hand() {
   for (int i = 0; i < objects.size(); ++i) {
     const btCollisionObject& object = *objects[i];
     Seen& seen = seen_[static_cast<std::size_t>(i)];
-    if (!may_be_moved_by_hand(object)) {
+    if (!may_be_moved_by_place(object)) {
       seen.object = nullptr;
       continue;
     }
     const Pose pose = as_pose(object.getWorldTransform());
     const int id = object.getBroadphaseHandle()->m_uniqueId;
     if (seen.object == &object && seen.id == id && !(seen.pose == pose)) {
-      if (const auto motion = moved_by_hand(seen.pose, pose, size_of(*object.getCollisionShape()), step_))
+      if (const auto motion = moved_by_place(seen.pose, pose, size_of(*object.getCollisionShape()), step_))
         moved_.push_back({&object, *motion});
     }
     seen = {&object, id, pose};
@@ -330,7 +330,7 @@ void BulletObstacles::begin(const btDiscreteDynamicsWorld& world, float step) {
   const btCollisionObjectArray& objects = world.getCollisionObjectArray();
   // The program moves trigger volumes, most of them without a velocity.
   const bool wants_triggers = role_ == Objects::kTriggers;
-  find_moved_by_hand();
+  find_moved_by_place();
   for (const Moved& moved : moved_) find_leaving(*moved.object);
   for (int i = 0; i < objects.size(); ++i)
     if (is_under_way(*objects[i]) || (wants_triggers && !objects[i]->hasContactResponse()))
@@ -398,7 +398,7 @@ std::uint32_t BulletObstacles::rigid_of(btCollisionObject& object) {
   rigid.centre = to_eigen(object.getWorldTransform().getOrigin());
   rigid.friction = object.getFriction();
   rigid.restitution = object.getRestitution();
-  if (const MovedByHand* const moved = moved_by_hand_of(object)) {
+  if (const MovedByPlace* const moved = moved_by_place_of(object)) {
     rigid.centre = moved->from.position;
     rigid.velocity = moved->velocity;
     rigid.spin = moved->spin;

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "ppu/surfaces/moved_by_hand.h"
+#include "ppu/surfaces/moved_by_place.h"
 #include "ppu/surfaces/obstacle.h"
 #include "softcell/soft_bodies/mesh.h"
 
@@ -74,7 +74,7 @@ class BulletObstacles {
   /// A static object that the program has moved since the last substep.
   struct Moved {
     const btCollisionObject* object;
-    MovedByHand motion;
+    MovedByPlace motion;
   };
   /// An object that leaves its box in the broad phase during the substep.
   struct Leaving {
@@ -82,8 +82,8 @@ class BulletObstacles {
     Bounds<3> box;  ///< around its motion
   };
 
-  void find_moved_by_hand();
-  const MovedByHand* moved_by_hand_of(const btCollisionObject& object) const;
+  void find_moved_by_place();
+  const MovedByPlace* moved_by_place_of(const btCollisionObject& object) const;
   Way way_of(const btCollisionObject& object) const;
   static Bounds<3> ahead(const Bounds<3>& box, const Way& way);
   static Bounds<3> behind(const Bounds<3>& box, const Way& way);
@@ -113,7 +113,8 @@ class BulletObstacles {
   std::vector<std::vector<Triangle>> triangles_;
   std::size_t edges_used_ = 0, triangles_used_ = 0;
   std::vector<Leaving> leaving_;
-  std::vector<Seen> seen_;  // for each object of the world; of those that may not be moved by hand, nothing
+  std::vector<Seen>
+      seen_;  // for each object of the world; of those that may not be moved by their place, nothing
   std::vector<Moved> moved_;
   std::vector<const btBroadphaseProxy*> found_;
   std::vector<btVector3> points_;

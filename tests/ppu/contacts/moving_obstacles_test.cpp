@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "contact_world.h"
-#include "ppu/surfaces/moved_by_hand.h"
+#include "ppu/surfaces/moved_by_place.h"
 #include "softcell/soft_bodies/attachment.h"
 
 namespace softcell::ppu {
@@ -177,19 +177,19 @@ TEST(MovingObstacles, AWeldFollowsAStaticBodyThatIsMovedByItsPlace) {
   EXPECT_NEAR(body.centre_of_mass().x(), 1, 0.1f);
 }
 
-TEST(MovedByHand, HasTheVelocitiesOfItsWay) {
+TEST(MovedByPlace, HasTheVelocitiesOfItsWay) {
   const Pose from{{1, 2, 3}, Eigen::AngleAxisf(0.3f, Vector3f::UnitY()).toRotationMatrix()};
   const Pose to{{1.1f, 2, 2.8f}, Eigen::AngleAxisf(0.31f, Vector3f::UnitY()).toRotationMatrix()};
-  const auto motion = moved_by_hand(from, to, 1, 0.01f);
+  const auto motion = moved_by_place(from, to, 1, 0.01f);
   ASSERT_TRUE(motion);
   EXPECT_EQ(motion->from, from);
   EXPECT_LT((motion->velocity - Vector3f(10, 0, -20)).norm(), 1e-4f);
   EXPECT_LT((motion->spin - Vector3f(0, 1, 0)).norm(), 1e-4f);
-  EXPECT_FALSE(moved_by_hand(from, from, 1, 0.01f)) << "it has not moved";
-  EXPECT_FALSE(moved_by_hand(from, {{1.6f, 2, 3}, from.rotation}, 1, 0.01f)) << "more than half of its size";
-  EXPECT_FALSE(moved_by_hand(from, {{3, 2, 3}, from.rotation}, 10, 0.01f)) << "200 m/s";
+  EXPECT_FALSE(moved_by_place(from, from, 1, 0.01f)) << "it has not moved";
+  EXPECT_FALSE(moved_by_place(from, {{1.6f, 2, 3}, from.rotation}, 1, 0.01f)) << "more than half of its size";
+  EXPECT_FALSE(moved_by_place(from, {{3, 2, 3}, from.rotation}, 10, 0.01f)) << "200 m/s";
   const Eigen::Matrix3f far = Eigen::AngleAxisf(1.5f, Vector3f::UnitY()).toRotationMatrix();
-  EXPECT_FALSE(moved_by_hand(from, {from.position, far}, 1, 0.01f)) << "turned by more than 60 degrees";
+  EXPECT_FALSE(moved_by_place(from, {from.position, far}, 1, 0.01f)) << "turned by more than 60 degrees";
 }
 
 TEST(MovingObstacles, MoveAlongAndAboutTheAxesThatBulletLeavesThem) {

@@ -1,5 +1,5 @@
 #pragma once
-// Rigid bodies that the program moves by setting their place, not their velocity: doors, characters, what a hand drags.
+// Rigid bodies that the program moves by setting their place, not their velocity: doors, lifts, characters.
 //
 // Such a body is somewhere else when the next substep begins, and may already be in a soft body. Contacts see it move there within the
 // substep, from where it was in the last one. What goes too far for that has not moved but been put elsewhere.
@@ -24,7 +24,7 @@ struct Pose {
 };
 
 /// A motion that lasts a substep.
-struct MovedByHand {
+struct MovedByPlace {
   Pose from;
   Eigen::Vector3f velocity{0, 0, 0};  ///< m/s
   Eigen::Vector3f spin{0, 0, 0};      ///< rad/s
@@ -33,16 +33,16 @@ struct MovedByHand {
 /// The motion from one pose to another one in `step` seconds. Nothing if the two are the same, or too far from each other: farther than
 /// half of what the body measures, than 100 m/s take it, or turned by more than 60 degrees.
 /// @param size  of the body along its longest axis, metres
-inline std::optional<MovedByHand> moved_by_hand(const Pose& from, const Pose& to, float size, float step) {
+inline std::optional<MovedByPlace> moved_by_place(const Pose& from, const Pose& to, float size, float step) {
   SC_ASSERT(step > 0 && size >= 0, "a body of {} m moves for {} s", size, step);
   constexpr float kFastest = 100, kLeastCosine = 0.5f;
   if (from == to) return std::nullopt;
   const Eigen::Vector3f way = to.position - from.position;
   const Eigen::Matrix3f turn = to.rotation * from.rotation.transpose();
-  if (way.norm() > std::min(size / 2, kFastest * step) || (turn.trace() - 1) / 2 < kLeastCosine)
+  if (!(way.norm() <= std::min(size / 2, kFastest * step)) || (turn.trace() - 1) / 2 < kLeastCosine)
     return std::nullopt;
   const Eigen::Vector3f axis(turn(2, 1) - turn(1, 2), turn(0, 2) - turn(2, 0), turn(1, 0) - turn(0, 1));
-  return MovedByHand{from, way / step, axis / (2 * step)};
+  return MovedByPlace{from, way / step, axis / (2 * step)};
 }
 
 }  // namespace softcell::ppu
