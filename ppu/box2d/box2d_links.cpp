@@ -63,8 +63,11 @@ void Box2dLinks::add_joints_of(b2Body& body, Box2dObstacles& obstacles,
     if (!joint.IsEnabled() || contains(joints_, &joint)) continue;
     joints_.push_back(&joint);
     if (contains(attached, obstacles.rigid_of(*edge->other))) continue;
-    add_joint_rows(joint, obstacles.rigid_of(*joint.GetBodyA()), obstacles.rigid_of(*joint.GetBodyB()), step,
-                   rows_);
+    // Joints see where a body is, and have no part in how the program moves it there.
+    const auto rigid_of = [&](b2Body& at) {
+      return obstacles.is_moved_by_place(at) ? JointRow::kWorld : obstacles.rigid_of(at);
+    };
+    add_joint_rows(joint, rigid_of(*joint.GetBodyA()), rigid_of(*joint.GetBodyB()), step, rows_);
   }
 }
 

@@ -111,10 +111,10 @@ bool is_under_way(const b2Body& body) {
   return body.IsAwake() && (body.GetLinearVelocity().LengthSquared() > 0 || body.GetAngularVelocity() != 0);
 }
 
-/// Whether nothing moves a body but the program by its place. Joints on it see where it is.
+/// Whether nothing moves a body but the program by its place.
 bool may_be_moved_by_place(const b2Body& body) {
   return body.GetType() != b2_dynamicBody && body.GetLinearVelocity().LengthSquared() == 0 &&
-         body.GetAngularVelocity() == 0 && body.GetJointList() == nullptr;
+         body.GetAngularVelocity() == 0;
 }
 
 Pose as_pose(const b2Transform& pose) {
@@ -187,18 +187,23 @@ void Box2dObstacles::find_moved_by_place() {
   for (b2Body* body = world_->GetBodyList(); body != nullptr; body = body->GetNext()) {
     KnownBody& known = known_bodies_.at(body);
     if (!may_be_moved_by_place(*body)) {
-      known.pose.reset();
+      known.place.reset();
       continue;
     }
     const Pose pose = as_pose(body->GetTransform());
-    if (known.pose && !(*known.pose == pose)) {
-      if (const auto motion = moved_by_place(*known.pose, pose, size_of(*body), step_)) {
-        moved_.push_back({body, *motion});
-        moving_.push_back(body);
-      }
+    if (!known.place) {
+      known.place.emplace(pose);
+    } else if (known.place->stands(pose)) {
+      known.place->stand();
+    } else if (const auto motion = known.place->follow(pose, size_of(*body), step_)) {
+      moved_.push_back({body, *motion});
+      moving_.push_back(body);
     }
-    known.pose = pose;
   }
+}
+
+void Box2dObstacles::forget_places() {
+  for (auto& [body, known] : known_bodies_) known.place.reset();
 }
 
 const MovedByPlace* Box2dObstacles::moved_by_place_of(const b2Body& body) const {

@@ -42,6 +42,10 @@ class Box2dObstacles {
   std::span<b2Body* const> bodies() const { return bodies_; }
   /// The index of a body in rigids(); adds it if it is missing. @pre begin() was called
   std::uint32_t rigid_of(b2Body& body);
+  /// Whether the program moves a body by its place in this step.
+  bool is_moved_by_place(const b2Body& body) const { return moved_by_place_of(body) != nullptr; }
+  /// Forgets where bodies were: steps have passed in which nobody looked.
+  void forget_places();
   /// Where a body is when the step begins: where it was before, if the program has moved it by its place since.
   b2Transform pose_of(const b2Body& body) const;
   /// The fixture of an obstacle.
@@ -90,9 +94,9 @@ class Box2dObstacles {
     std::uint32_t number;
     std::uint64_t looked = 0;  // the number of the step that found `look`; 0: none has
     std::uint64_t look = 0;
-    std::optional<Pose> pose = {};  // in the last step, if nothing moves it but the program by its place
+    std::optional<FollowedPlace> place = {};  // if nothing moves it but the program by its place
   };
-  /// A body that the program has moved by its place since the last step.
+  /// A body that the program moves by its place in this step.
   struct Moved {
     const b2Body* body;
     MovedByPlace motion;

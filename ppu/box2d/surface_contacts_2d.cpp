@@ -187,7 +187,7 @@ void SurfaceContacts2d::wake_those_in_the_way(Bodies bodies) {
 }
 
 void SurfaceContacts2d::step(Bodies bodies, Box2dAttachments& attachments, float step) {
-  if (bodies.empty()) return;
+  if (bodies.empty()) return obstacles_.forget_places();
   SC_ASSERT(step > 0 && !world_.IsLocked(), "contacts of {} s within a step of Box2D, or of none", step);
   obstacles_.begin(world_, step, largest_cell(bodies));
   begin_attachments(bodies, attachments, step);

@@ -56,8 +56,10 @@ RigidLinks BulletLinks::find(const btDiscreteDynamicsWorld& world, BulletObstacl
   for (const btCollisionObject* const object : obstacles.objects()) reach(*object);
   for (int i = 0; i <= kFarthestTouch; ++i)
     if (!add_reached(obstacles, is_attached)) break;
+  // Joints see where a body is, and have no part in how the program moves it there.
   const auto rigid_of = [&](btRigidBody& body) {
-    return is_in_world(body) ? obstacles.rigid_of(body) : JointRow::kWorld;
+    return is_in_world(body) && !obstacles.is_moved_by_place(body) ? obstacles.rigid_of(body)
+                                                                   : JointRow::kWorld;
   };
   for (btTypedConstraint* const joint : joints_) {
     btRigidBody &a = joint->getRigidBodyA(), &b = joint->getRigidBodyB();

@@ -212,11 +212,10 @@ btVector3 where_it_moves(const btVector3& change, const btVector3& factor) {
           factor.z() == 0 ? 0 : change.z()};
 }
 
-/// Whether nothing moves an object but the program by its place. Joints on it see where it is.
+/// Whether nothing moves an object but the program by its place. Bullet gives kinematic bodies a velocity, but not other kinematic objects.
 bool may_be_moved_by_place(const btCollisionObject& object) {
   const btRigidBody* const body = btRigidBody::upcast(&object);
-  if (body == nullptr) return !object.isKinematicObject();
-  return body->isStaticObject() && !body->isKinematicObject() && body->getNumConstraintRefs() == 0;
+  return body == nullptr || (body->isStaticObject() && !body->isKinematicObject());
 }
 
 Pose as_pose(const btTransform& pose) { return {to_eigen(pose.getOrigin()), to_eigen(pose.getBasis())}; }
@@ -297,21 +296,23 @@ void BulletObstacles::find_moved_by_place() {
   moved_.clear();
   if (role_ != Objects::kSolid) return;
   const btCollisionObjectArray& objects = world_->getCollisionObjectArray();
-  seen_.resize(static_cast<std::size_t>(objects.size()));
+  followed_.resize(static_cast<std::size_t>(objects.size()));
   for (int i = 0; i < objects.size(); ++i) {
     const btCollisionObject& object = *objects[i];
-    Seen& seen = seen_[static_cast<std::size_t>(i)];
+    Followed& followed = followed_[static_cast<std::size_t>(i)];
     if (!may_be_moved_by_place(object)) {
-      seen.object = nullptr;
+      followed.object = nullptr;
       continue;
     }
     const Pose pose = as_pose(object.getWorldTransform());
     const int id = object.getBroadphaseHandle()->m_uniqueId;
-    if (seen.object == &object && seen.id == id && !(seen.pose == pose)) {
-      if (const auto motion = moved_by_place(seen.pose, pose, size_of(*object.getCollisionShape()), step_))
-        moved_.push_back({&object, *motion});
+    if (followed.object != &object || followed.id != id) {
+      followed = {&object, id, FollowedPlace(pose)};
+    } else if (followed.place.stands(pose)) {
+      followed.place.stand();
+    } else if (const auto motion = followed.place.follow(pose, size_of(*object.getCollisionShape()), step_)) {
+      moved_.push_back({&object, *motion});
     }
-    seen = {&object, id, pose};
   }
 }
 

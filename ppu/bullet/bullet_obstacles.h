@@ -40,6 +40,10 @@ class BulletObstacles {
   /// The index of an object's rigid body, near or not. @pre begin() was called
   std::uint32_t rigid_of(btCollisionObject& object);
 
+  /// Whether the program moves an object by its place in this substep.
+  bool is_moved_by_place(const btCollisionObject& object) const {
+    return moved_by_place_of(object) != nullptr;
+  }
   /// Where an object is when the substep begins: where it was before, if the program has moved it by its place since.
   btTransform pose_of(const btCollisionObject& object) const;
 
@@ -65,13 +69,13 @@ class BulletObstacles {
     std::vector<ObstacleEdge> edges;
   };
   using Triangle = std::array<Eigen::Vector3f, 3>;
-  /// A static object, as it was in a substep.
-  struct Seen {
+  /// An object that only the program moves.
+  struct Followed {
     const btCollisionObject* object = nullptr;
     int id = 0;  ///< in the broad phase
-    Pose pose;
+    FollowedPlace place{{}};
   };
-  /// A static object that the program has moved since the last substep.
+  /// One of them that moves in this substep.
   struct Moved {
     const btCollisionObject* object;
     MovedByPlace motion;
@@ -113,8 +117,7 @@ class BulletObstacles {
   std::vector<std::vector<Triangle>> triangles_;
   std::size_t edges_used_ = 0, triangles_used_ = 0;
   std::vector<Leaving> leaving_;
-  std::vector<Seen>
-      seen_;  // for each object of the world; of those that may not be moved by their place, nothing
+  std::vector<Followed> followed_;  // for each object of the world; of one that others move, nothing
   std::vector<Moved> moved_;
   std::vector<const btBroadphaseProxy*> found_;
   std::vector<btVector3> points_;

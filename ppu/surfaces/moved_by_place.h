@@ -1,15 +1,13 @@
 #pragma once
 // Rigid bodies that the program moves by setting their place, not their velocity: doors, lifts, characters.
 //
-// Such a body is somewhere else when the next substep begins, and may already be in a soft body. Contacts see it move there within the
-// substep, from where it was in the last one. What goes too far for that has not moved but been put elsewhere.
+// Such a body is somewhere else when the next substep begins, and may already be in a soft body. Contacts see it move there, from where it
+// was. A program that sets places once a frame of several substeps would throw what it pushes if all of the way lay in the first of them,
+// so the way is spread over as many substeps as lay between the last two changes: at the frame's end the body is where the program has put
+// it. What goes too far for that has not moved but been put elsewhere.
 
 #include <Eigen/Core>
-#include <algorithm>
-#include <cmath>
 #include <optional>
-
-#include "softcell/base/assert.h"
 
 namespace softcell::ppu {
 
@@ -30,19 +28,29 @@ struct MovedByPlace {
   Eigen::Vector3f spin{0, 0, 0};      ///< rad/s
 };
 
-/// The motion from one pose to another one in `step` seconds. Nothing if the two are the same, or too far from each other: farther than
-/// half of what the body measures, than 100 m/s take it, or turned by more than 60 degrees.
-/// @param size  of the body along its longest axis, metres
-inline std::optional<MovedByPlace> moved_by_place(const Pose& from, const Pose& to, float size, float step) {
-  SC_ASSERT(step > 0 && size >= 0, "a body of {} m moves for {} s", size, step);
-  constexpr float kFastest = 100, kLeastCosine = 0.5f;
-  if (from == to) return std::nullopt;
-  const Eigen::Vector3f way = to.position - from.position;
-  const Eigen::Matrix3f turn = to.rotation * from.rotation.transpose();
-  if (!(way.norm() <= std::min(size / 2, kFastest * step)) || (turn.trace() - 1) / 2 < kLeastCosine)
-    return std::nullopt;
-  const Eigen::Vector3f axis(turn(2, 1) - turn(1, 2), turn(0, 2) - turn(2, 0), turn(1, 0) - turn(0, 1));
-  return MovedByPlace{from, way / step, axis / (2 * step)};
-}
+/// Follows one body from substep to substep. Used by one thread.
+class FollowedPlace {
+ public:
+  /// @param pose  where the body is; it has not moved yet
+  explicit FollowedPlace(const Pose& pose) : seen_(pose), shown_(pose) {}
+
+  /// Whether the body stands still in this substep. Call this first, and follow() if it does not.
+  bool stands(const Pose& now) const { return left_ == 0 && now == seen_; }
+  /// Counts a substep in which it stands still.
+  void stand() { ++since_; }
+  /// The motion of this substep. None if the body has been put elsewhere: farther than half of what it measures, than 100 m/s take it, or
+  /// turned by more than 60 degrees.
+  /// @param now   where the program has put it
+  /// @param size  of the body along its longest axis, metres
+  /// @param step  seconds, of this substep
+  std::optional<MovedByPlace> follow(const Pose& now, float size, float step);
+
+ private:
+  Pose seen_;      // where the program has put it
+  Pose shown_;     // where contacts see it
+  int left_ = 0;   // substeps until these two are the same
+  int since_ = 0;  // substeps since the program has moved it
+  bool has_moved_ = false;
+};
 
 }  // namespace softcell::ppu

@@ -529,10 +529,30 @@ TEST_P(FlatContacts, WhatIsMovedByItsPlacePushesABodyAlong) {
       for (int i = 1; i <= 90; ++i) {
         door->SetTransform({-1.2f + speed * kStep2d * static_cast<float>(i), 1.01f}, 0);
         w->soft.step(kStep2d);
+        // Its first way is spread over four steps, as it may have moved for a frame of so many.
+        if (i <= 5) continue;
         for (const Vector2f& at : drawn.edge())
           ASSERT_GT(at.x(), door->GetPosition().x + 0.2f - 0.1f * 0.25f) << speed << " m/s, step " << i;
       }
     }
+}
+
+/// Nobody followed the wall while no soft body was there: it is where it is.
+TEST_P(FlatContacts, AWallThatWasMovedBeforePushesNothing) {
+  const auto w = world();
+  w->add_box({0, -1}, {30, 1});
+  w->soft.remove(w->soft.add(rectangle_model({2, 2}, calm()), {5, 0.13f}));
+  b2Body* const wall = w->add_box({-1, 1}, {0.2f, 1});
+  const SoftBody<2>* const first = &w->soft.add(rectangle_model({2, 2}, calm()), {5, 0.13f});
+  w->soft.step(kStep2d);
+  w->soft.remove(*first);
+  for (int i = 0; i < 60; ++i) {
+    wall->SetTransform({-1 - 0.01f * static_cast<float>(i), 1}, 0);
+    w->soft.step(kStep2d);
+  }
+  const SoftBody<2>& body = w->soft.add(rectangle_model({2, 2}, calm()), {-1, 0.13f});
+  w->run(1);
+  EXPECT_NEAR(body.centre_of_mass().x(), -1, 0.05f);
 }
 
 TEST_P(FlatContacts, ATorqueOnABoxPressesItsCorners) {
