@@ -379,9 +379,25 @@ SC_C_INLINE void softcell_halt_if(int condition) {
 #define spu_readchcnt(channel) (softcell_call_gate(softcell_count, SC_C_CONSTANT(channel, 0, 127), 0))
 #define spu_writech(channel, value) \
   (softcell_write_channel(SC_C_CONSTANT(channel, 0, 127), (uint32_t)(value)))
-/* Of a vector of any lanes: its first word. */
-#define spu_writechqw(channel, value) \
-  spu_writech(channel, ((vec_uint4)softcell_regroup((vec_uchar16)(value), (sizeof(value)[0] - 1) ^ 3))[0])
+/* The first word of a vector with lanes of so many bytes. It is read from memory, as no cast means the same with every compiler here: GCC
+ * marks the words of a system header's macro, and what is marked is not rewritten; Clang does not mark them. */
+SC_C_INLINE uint32_t softcell_first_word(const void* vector_, unsigned int lane_bytes_) {
+  uint32_t word_ = 0;
+  unsigned int i_;
+  if (lane_bytes_ >= 4) {
+    __builtin_memcpy(&word_, (const unsigned char*)vector_ + (lane_bytes_ - 4), 4);
+  } else if (lane_bytes_ == 2) {
+    for (i_ = 0; i_ < 2; ++i_) word_ = word_ << 16 | ((const vec_ushort8*)vector_)[0][i_];
+  } else {
+    for (i_ = 0; i_ < 4; ++i_) word_ = word_ << 8 | ((const unsigned char*)vector_)[i_];
+  }
+  return word_;
+}
+#define spu_writechqw(channel, value)                                                       \
+  __extension__({                                                                           \
+    __typeof__(value) softcell_value_ = (value);                                            \
+    spu_writech(channel, softcell_first_word(&softcell_value_, sizeof softcell_value_[0])); \
+  })
 #define spu_stop(code) ((void)softcell_call_gate(softcell_stop, 0, SC_C_CONSTANT(code, 0, 0x3FFF)))
 #define spu_sync() ((void)softcell_call_gate(softcell_sync, 0, 0))
 #define spu_sync_c() spu_sync()

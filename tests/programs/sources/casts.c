@@ -128,7 +128,7 @@ static void operands(void) {
   CHECK(in_order((vec_uchar16)(counted = 3, words)) && counted == 3);
   CHECK(((vec_ushort8)(i++, words))[1] == 0x0203);
   CHECK(in_order((vec_uchar16)(vec_uint4)(0x00010203, 0x04050607, 0x08090A0B, 0x0C0D0E0F)));
-  CHECK(((vec_uchar16)words)[5] - 1 == 4 && ((vec_float4)(words))[0] > 0);
+  CHECK(((vec_uchar16)words)[5] - 1 == 4 && ((vec_float4)(words))[1] > 0);
 }
 
 /* In a macro of the SDK. */
