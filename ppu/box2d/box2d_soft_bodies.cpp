@@ -87,6 +87,7 @@ struct Box2dSoftBodies::Impl {
     if (!sleep) return;
     for (const auto& body : bodies)
       if (!body->soft().asleep() && !attachments.holds(*body)) body->count_stillness(step, sleep->speed);
+    if (surfaces) surfaces->forget_destroyed();
     static const SoftTouches kNone;
     const SoftTouches& touches = surfaces ? surfaces->touches() : kNone;
     for (const auto& body : bodies) {

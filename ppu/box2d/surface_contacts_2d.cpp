@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <optional>
 
 #include "ppu/contacts/overlap.h"
@@ -247,6 +248,19 @@ void SurfaceContacts2d::note_touches(Bodies bodies) {
       if (touches_.soft.empty() || touches_.soft.back() != std::pair(a, b)) touches_.soft.emplace_back(a, b);
     }
   }
+}
+
+void SurfaceContacts2d::forget_destroyed() {
+  if (touches_.rigid.empty()) return;
+  living_.clear();
+  for (const b2Body* body = world_.GetBodyList(); body != nullptr; body = body->GetNext())
+    living_.push_back(body);
+  std::ranges::sort(living_, std::less<>());
+  std::erase_if(touches_.rigid, [&](const auto& pair) {
+    const bool is_gone = !std::ranges::binary_search(living_, pair.second, std::less<>());
+    if (is_gone) pair.first->wake();  // its load or its support is gone
+    return is_gone;
+  });
 }
 
 void SurfaceContacts2d::log_touches(Bodies bodies) {

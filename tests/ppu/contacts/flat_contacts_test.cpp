@@ -537,6 +537,25 @@ TEST_P(FlatContacts, WhatIsMovedByItsPlacePushesABodyAlong) {
     }
 }
 
+/// Where programs destroy bodies: after Box2D's step. What rests on the body then is not read any more.
+TEST_P(FlatContacts, ABodyThatIsDestroyedWithinAStepKeepsNobodyAwake) {
+  const auto w = world();
+  w->add_box({0, -1}, {10, 1});
+  w->soft.let_sleep(SleepSettings{});
+  SoftBody<2>& body = w->soft.add(rectangle_model({6, 2}, calm()), {0, 0.13f});
+  b2Body* box = w->add_box({0, 0.9f}, {0.2f, 0.2f}, 5);
+  box->SetSleepingAllowed(false);
+  w->run(4);
+  ASSERT_FALSE(body.asleep()) << "the box on it never sleeps";
+  w->soft.begin_step(kStep2d);
+  w->box2d.Step(kStep2d, 8, 3);
+  w->box2d.DestroyBody(box);
+  w->soft.end_step(kStep2d);
+  EXPECT_FALSE(body.asleep()) << "its load is gone";
+  w->run(3);
+  EXPECT_TRUE(body.asleep());
+}
+
 /// Nobody followed the wall while no soft body was there: it is where it is.
 TEST_P(FlatContacts, AWallThatWasMovedBeforePushesNothing) {
   const auto w = world();
