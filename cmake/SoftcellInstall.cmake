@@ -73,7 +73,7 @@ macro(softcell_install_component component)
     install(FILES ${PROJECT_SOURCE_DIR}/ppu/libspe2/include/libspe2.h ${PROJECT_SOURCE_DIR}/ppu/libspe2/include/libspe2-types.h
       ${PROJECT_SOURCE_DIR}/ppu/libspe2/include/cbea_map.h ${PROJECT_SOURCE_DIR}/ppu/libspe2/include/ppu_intrinsics.h
       ${PROJECT_SOURCE_DIR}/ppu/libspe2/include/libmisc.h ${PROJECT_SOURCE_DIR}/ppu/libspe2/include/malloc_align.h
-      ${PROJECT_SOURCE_DIR}/ppu/libspe2/include/free_align.h TYPE INCLUDE COMPONENT development)
+      ${PROJECT_SOURCE_DIR}/ppu/libspe2/include/free_align.h ${PROJECT_SOURCE_DIR}/ppu/libspe2/include/libsync.h TYPE INCLUDE COMPONENT development)
     softcell_install_pkg_config(libspe2 "the SPE Runtime Management Library" LIBS -Wl,-rpath,\${libdir} -lspe2)
   elseif("${component}" STREQUAL "render")
     softcell_install_libraries(render glad render)

@@ -1,5 +1,5 @@
 """Holds the tables of functions in docs/guide/cell-programs.md and docs/reference/c-library.md against the headers and against what the
-tests call.
+tests call, and libsync.h of the one side against that of the other.
 
 Usage: check_table.py ROOT
 """
@@ -44,6 +44,20 @@ def check_c_library(root):
     return wrong
 
 
+def check_both_sides(root):
+    """libsync.h has the same functions, and the same names with an underscore, on both sides."""
+    sides = [(root / folder / "libsync.h").read_text() for folder in ("spu_kernels/sdk/library/include", "ppu/libspe2/include")]
+    calls = [set(re.findall(r"^(?:SOFTCELL_SYNC_INLINE )?(?:void|int) ((?!softcell_)\w+)\(", side, flags=re.M)) for side in sides]
+    names = [set(re.findall(r"^#define _(\w+) \1$", side, flags=re.M)) for side in sides]
+    wrong = [f"{each}: is in libsync.h of one side only" for each in calls[0] ^ calls[1]]
+    wrong += [f"{each}: libsync.h does not have _{each} on both sides" for each in calls[0] - (names[0] & names[1])]
+    called = set(re.findall(r"\w+", sources_of(root, ("tests/libspe2/ppu",))))
+    wrong += [f"{each}: no test calls it on the PPU side" for each in calls[1] - called]
+    if len(calls[0]) < 30:
+        wrong.append("libsync.h declares nothing that this script finds")
+    return wrong
+
+
 def main():
     root = pathlib.Path(sys.argv[1])
     interfaces = {
@@ -67,7 +81,7 @@ def main():
         wrong += [f"{each}: no test calls it" for each in declared - called]
         if not declared:
             wrong.append(f"{headers} declare nothing that this script finds")
-    wrong += check_c_library(root)
+    wrong += check_c_library(root) + check_both_sides(root)
     for sentence in sorted(wrong):
         print(sentence, file=sys.stderr)
     return 1 if wrong else 0
