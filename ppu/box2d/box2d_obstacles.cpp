@@ -182,33 +182,34 @@ void Box2dObstacles::begin(b2World& world, float step, float layer) {
 
 /// Moved bodies lie where the program has put them in Box2D's tree, too.
 void Box2dObstacles::find_moved_by_place() {
-  moved_.clear();
   if (wanted_ != Fixtures::kSolid) return;
   for (b2Body* body = world_->GetBodyList(); body != nullptr; body = body->GetNext()) {
     KnownBody& known = known_bodies_.at(body);
     if (!may_be_moved_by_place(*body)) {
       known.place.reset();
+      known.motion.reset();
       continue;
     }
+    known.motion.reset();
     const Pose pose = as_pose(body->GetTransform());
     if (!known.place) {
       known.place.emplace(pose);
     } else if (known.place->stands(pose)) {
       known.place->stand();
-    } else if (const auto motion = known.place->follow(pose, size_of(*body), step_)) {
-      moved_.push_back({body, *motion});
-      moving_.push_back(body);
+    } else {
+      known.motion = known.place->follow(pose, size_of(*body), step_);
+      if (known.motion) moving_.push_back(body);
     }
   }
 }
 
 void Box2dObstacles::forget_places() {
-  for (auto& [body, known] : known_bodies_) known.place.reset();
+  for (auto& [body, known] : known_bodies_) known.place.reset(), known.motion.reset();
 }
 
 const MovedByPlace* Box2dObstacles::moved_by_place_of(const b2Body& body) const {
-  const auto found = std::ranges::find(moved_, &body, &Moved::body);
-  return found == moved_.end() ? nullptr : &found->motion;
+  const std::optional<MovedByPlace>& motion = known_bodies_.at(&body).motion;
+  return motion ? &*motion : nullptr;
 }
 
 b2Transform Box2dObstacles::pose_of(const b2Body& body) const {

@@ -95,11 +95,7 @@ class Box2dObstacles {
     std::uint64_t looked = 0;  // the number of the step that found `look`; 0: none has
     std::uint64_t look = 0;
     std::optional<FollowedPlace> place = {};  // if nothing moves it but the program by its place
-  };
-  /// A body that the program moves by its place in this step.
-  struct Moved {
-    const b2Body* body;
-    MovedByPlace motion;
+    std::optional<MovedByPlace> motion = {};  // in this step
   };
   class Collector;
 
@@ -132,7 +128,6 @@ class Box2dObstacles {
   std::uint32_t next_number_ = 0;
   std::vector<b2Body*> unknown_;
   std::vector<b2Body*> moving_;  // in this substep
-  std::vector<Moved> moved_;
   std::vector<Found> found_;
   std::vector<Known> known_;
   std::deque<Shape> shapes_;  // obstacles point into them

@@ -279,8 +279,10 @@ Bounds<3> BulletObstacles::behind(const Bounds<3>& box, const Way& way) {
 }
 
 const MovedByPlace* BulletObstacles::moved_by_place_of(const btCollisionObject& object) const {
-  const auto found = std::ranges::find(moved_, &object, &Moved::object);
-  return found == moved_.end() ? nullptr : &found->motion;
+  const auto place = static_cast<std::size_t>(object.getWorldArrayIndex());
+  if (place >= followed_.size() || followed_[place].object != &object) return nullptr;
+  const std::optional<MovedByPlace>& motion = followed_[place].motion;
+  return motion ? &*motion : nullptr;
 }
 
 btTransform BulletObstacles::pose_of(const btCollisionObject& object) const {
@@ -293,7 +295,6 @@ btTransform BulletObstacles::pose_of(const btCollisionObject& object) const {
 
 /// Objects change their places in the world's list when one is removed: they are then seen for the first time again.
 void BulletObstacles::find_moved_by_place() {
-  moved_.clear();
   if (role_ != Objects::kSolid) return;
   const btCollisionObjectArray& objects = world_->getCollisionObjectArray();
   followed_.resize(static_cast<std::size_t>(objects.size()));
@@ -304,14 +305,16 @@ void BulletObstacles::find_moved_by_place() {
       followed.object = nullptr;
       continue;
     }
+    followed.motion.reset();
     const Pose pose = as_pose(object.getWorldTransform());
     const int id = object.getBroadphaseHandle()->m_uniqueId;
     if (followed.object != &object || followed.id != id) {
       followed = {&object, id, FollowedPlace(pose)};
     } else if (followed.place.stands(pose)) {
       followed.place.stand();
-    } else if (const auto motion = followed.place.follow(pose, size_of(*object.getCollisionShape()), step_)) {
-      moved_.push_back({&object, *motion});
+    } else {
+      followed.motion = followed.place.follow(pose, size_of(*object.getCollisionShape()), step_);
+      if (followed.motion) find_leaving(object);
     }
   }
 }
@@ -332,7 +335,6 @@ void BulletObstacles::begin(const btDiscreteDynamicsWorld& world, float step) {
   // The program moves trigger volumes, most of them without a velocity.
   const bool wants_triggers = role_ == Objects::kTriggers;
   find_moved_by_place();
-  for (const Moved& moved : moved_) find_leaving(*moved.object);
   for (int i = 0; i < objects.size(); ++i)
     if (is_under_way(*objects[i]) || (wants_triggers && !objects[i]->hasContactResponse()))
       find_leaving(*objects[i]);

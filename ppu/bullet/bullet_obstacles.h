@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -74,11 +75,7 @@ class BulletObstacles {
     const btCollisionObject* object = nullptr;
     int id = 0;  ///< in the broad phase
     FollowedPlace place{{}};
-  };
-  /// One of them that moves in this substep.
-  struct Moved {
-    const btCollisionObject* object;
-    MovedByPlace motion;
+    std::optional<MovedByPlace> motion = {};  ///< in this substep
   };
   /// An object that leaves its box in the broad phase during the substep.
   struct Leaving {
@@ -118,7 +115,6 @@ class BulletObstacles {
   std::size_t edges_used_ = 0, triangles_used_ = 0;
   std::vector<Leaving> leaving_;
   std::vector<Followed> followed_;  // for each object of the world; of one that others move, nothing
-  std::vector<Moved> moved_;
   std::vector<const btBroadphaseProxy*> found_;
   std::vector<btVector3> points_;
 };
