@@ -117,7 +117,7 @@ void SurfaceContacts2d::begin(Bodies bodies, const Box2dAttachments& attachments
       return attachments.parts(body, *obstacles_.bodies()[obstacles_.obstacles()[obstacle].rigid]);
     });
     if (!soft.asleep()) kept.seen.clear();
-    if (soft.asleep() && must_wake(kept, soft, in_stage)) body.wake();
+    if (soft.asleep()) wake_if_disturbed(kept, body, in_stage);
     if (!soft.asleep() && kept.lies()) rise(kept);
   }
 }
@@ -133,8 +133,23 @@ void SurfaceContacts2d::see(Kept& kept, b2Body& body) {
     kept.seen.push_back(as_it_is(body));
 }
 
-/// Whether a body beside the sleeping one has begun to move, or one that it lies on is gone.
-bool SurfaceContacts2d::must_wake(Kept& kept, const SoftBody<2>& sleeper, const BodyInStage& in_stage) {
+/// Wakes a sleeper if a body beside it has begun to move, or what it lies on is gone or has moved. In the latter case it tells those on it:
+/// a support that moves slowly, such as a lift, moves nobody so fast that others would wake.
+void SurfaceContacts2d::wake_if_disturbed(Kept& kept, Box2dBody& body, const BodyInStage& in_stage) {
+  const auto moves_there = [&](std::uint32_t obstacle) {
+    b2Body& beside = *obstacles_.bodies()[obstacles_.obstacles()[obstacle].rigid];
+    see(kept, beside);
+    return moves(beside);
+  };
+  if (std::ranges::any_of(in_stage.obstacles, moves_there)) {
+    body.wake();
+  } else if (has_lost_support(kept, body.soft())) {
+    body.wake();
+    tell_those_on(body);
+  }
+}
+
+bool SurfaceContacts2d::has_lost_support(const Kept& kept, const SoftBody<2>& sleeper) {
   constexpr float kCreep = 0.02f;  // cells: more than the depth that contacts allow
   const float far = kCreep * sleeper.model().lattice().spacing;
   const Eigen::Vector2f centre = sleeper.centre_of_mass();
@@ -147,13 +162,7 @@ bool SurfaceContacts2d::must_wake(Kept& kept, const SoftBody<2>& sleeper, const 
     const b2Vec2 there = b2Mul(seen.body->GetTransform(), b2MulT(seen.pose, middle));
     return b2DistanceSquared(there, middle) > far * far;
   };
-  const auto moves_there = [&](std::uint32_t obstacle) {
-    b2Body& body = *obstacles_.bodies()[obstacles_.obstacles()[obstacle].rigid];
-    see(kept, body);
-    return moves(body);
-  };
   return kept.lost_support || std::ranges::any_of(kept.supports, is_gone_or_moved) ||
-         std::ranges::any_of(in_stage.obstacles, moves_there) ||
          std::ranges::any_of(kept.seen, is_gone_or_elsewhere);
 }
 

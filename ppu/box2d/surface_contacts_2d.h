@@ -117,7 +117,8 @@ class SurfaceContacts2d {
   Support as_it_is(b2Body& body) { return {&body, body.GetTransform(), obstacles_.look(body)}; }
   bool is_gone(const Support& support);
   void see(Kept& kept, b2Body& body);
-  bool must_wake(Kept& kept, const SoftBody<2>& sleeper, const BodyInStage& in_stage);
+  void wake_if_disturbed(Kept& kept, Box2dBody& body, const BodyInStage& in_stage);
+  bool has_lost_support(const Kept& kept, const SoftBody<2>& sleeper);
   void rise(Kept& kept);
   void wake_those_in_the_way(Bodies bodies);
   void move(Bodies bodies, float step);

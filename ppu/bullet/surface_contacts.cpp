@@ -60,13 +60,34 @@ bool SurfaceContacts::any_near(const BodyInStage& body, const Is& is) const {
   });
 }
 
-/// Whether something that moves has come near the sleeper, or something that it has seen is gone, has moved or has changed.
-bool SurfaceContacts::is_disturbed(SurfaceBody& sleeper, const BodyInStage& in_stage) const {
+/// Wakes a sleeper if something that moves has come near, or something that it has seen is gone, has moved or has changed.
+void SurfaceContacts::wake_if_disturbed(std::span<SurfaceBody* const> bodies, std::size_t body) {
+  SurfaceBody& sleeper = *bodies[body];
   const auto moves_or_is_seen = [&](const btCollisionObject& object) {
     sleeper.see(object.getWorldArrayIndex());
     return moves(object);
   };
-  return any_near(in_stage, moves_or_is_seen) || sleeper.notices_a_change();
+  if (any_near(in_stage_[body], moves_or_is_seen)) {
+    sleeper.rouse();
+  } else if (sleeper.notices_a_change()) {
+    sleeper.rouse();
+    shaken_.push_back(body);
+  }
+}
+
+/// Wakes sleepers on bodies whose support has changed, and those on these: a support that moves slowly, such as a lift, moves nobody so fast
+/// that others would wake.
+void SurfaceContacts::wake_those_on_shaken(std::span<SurfaceBody* const> bodies) {
+  for (std::size_t i = 0; i < shaken_.size(); ++i) {
+    const SurfaceBody& shaken = *bodies[shaken_[i]];
+    const Bounds<3> box = shaken.soft().bounds();
+    for (std::size_t other = 0; other < bodies.size(); ++other) {
+      if (!bodies[other]->soft().asleep()) continue;
+      bodies[other]->lose(shaken, box);
+      if (!bodies[other]->soft().asleep()) shaken_.push_back(other);
+    }
+  }
+  shaken_.clear();
 }
 
 /// For a body that has just fallen asleep. The program's callbacks may have removed some of these objects in this substep.
@@ -99,9 +120,10 @@ void SurfaceContacts::step(std::span<SurfaceBody* const> bodies, float step) {
     obstacles_.add_near(in_stage.box, bodies[i]->filter().group, bodies[i]->filter().mask,
                         in_stage.obstacles);
     if (!attachments_.empty()) attachments_.part(*bodies[i], obstacles_, in_stage.obstacles);
-    if (bodies[i]->soft().asleep() && is_disturbed(*bodies[i], in_stage)) bodies[i]->rouse();
+    if (bodies[i]->soft().asleep()) wake_if_disturbed(bodies, i);
     in_stage.filter = bodies[i]->filter();
   }
+  wake_those_on_shaken(bodies);
   wake_those_in_the_way(bodies);
   stage_.settings.bounces = {world_.getSolverInfo().m_restitutionVelocityThreshold,
                              to_eigen(world_.getGravity())};

@@ -65,7 +65,8 @@ class SurfaceContacts {
   void move(std::span<SurfaceBody* const> bodies, float step);
   void wake_those_in_the_way(std::span<SurfaceBody* const> bodies);
   void find_at_rest(std::span<SurfaceBody* const> bodies);
-  bool is_disturbed(SurfaceBody& sleeper, const BodyInStage& in_stage) const;
+  void wake_if_disturbed(std::span<SurfaceBody* const> bodies, std::size_t body);
+  void wake_those_on_shaken(std::span<SurfaceBody* const> bodies);
   void see_what_is_near(SurfaceBody& sleeper, const BodyInStage& in_stage) const;
   template <typename Is>
   bool any_near(const BodyInStage& body, const Is& is) const;
@@ -86,6 +87,7 @@ class SurfaceContacts {
   std::vector<BodyInStage> in_stage_;
   std::vector<const SoftBody<3>*> softs_;  // of the last substep
   std::vector<std::uint32_t> moving_;      // bodies that wake those in their way
+  std::vector<std::size_t> shaken_;        // bodies that wake those on them, as their support has changed
   DisjointSets islands_;                   // of bodies in the last substep
   std::vector<bool> is_restless_;          // of each island
   bool watches_ = false;

@@ -537,6 +537,31 @@ TEST_P(FlatContacts, WhatIsMovedByItsPlacePushesABodyAlong) {
     }
 }
 
+/// A lift so slow that nobody on it moves fast enough to wake others.
+TEST_P(FlatContacts, ASleepingStackFollowsASlowLift) {
+  for (const float speed : {-0.08f, 0.08f}) {
+    const auto w = world();
+    w->soft.let_sleep(SleepSettings{.speed = 0.1f});
+    b2Body* const lift = w->add_box({0, -1}, {10, 1});
+    std::vector<const SoftBody<2>*> stack;
+    for (int i = 0; i < 3; ++i)
+      stack.push_back(
+          &w->soft.add(rectangle_model({6, 2}, calm()), {0, 0.13f + 0.76f * static_cast<float>(i)}));
+    w->run(6);
+    ASSERT_TRUE(stack[2]->asleep());
+    std::vector<float> before;
+    for (const SoftBody<2>* const body : stack) before.push_back(body->centre_of_mass().y());
+    for (int i = 1; i <= 480; ++i) {
+      lift->SetTransform({0, -1 + speed * kStep2d * static_cast<float>(i)}, 0);
+      w->soft.step(kStep2d);
+    }
+    w->run(1);
+    for (std::size_t i = 0; i < stack.size(); ++i)
+      EXPECT_NEAR(stack[i]->centre_of_mass().y() - before[i], 4 * speed, 0.1f * 0.25f)
+          << speed << " m/s, body " << i;
+  }
+}
+
 /// Where programs destroy bodies: after Box2D's step. What rests on the body then is not read any more.
 TEST_P(FlatContacts, ABodyThatIsDestroyedWithinAStepKeepsNobodyAwake) {
   const auto w = world();

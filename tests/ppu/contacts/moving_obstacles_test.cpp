@@ -151,6 +151,38 @@ TEST(MovingObstacles, WhatIsMovedByItsPlacePushesABodyAlong) {
     }
 }
 
+/// A lift so slow that nobody on it moves fast enough to wake others.
+TEST(MovingObstacles, ASleepingStackFollowsASlowLift) {
+  for (const float speed : {-0.04f, 0.04f})
+    for (const bool is_kinematic : {false, true}) {
+      ContactWorld w;
+      w.bodies.let_sleep(SleepSettings{});
+      btRigidBody& lift = w.add(std::make_unique<btBoxShape>(btVector3(1, 0.1f, 1)), 0, {0, -0.1f, 0});
+      if (is_kinematic) {
+        lift.setCollisionFlags(btCollisionObject::CF_KINEMATIC_OBJECT);
+        lift.setActivationState(DISABLE_DEACTIVATION);
+      }
+      std::vector<const SoftBody<3>*> stack;
+      for (int i = 0; i < 3; ++i)
+        stack.push_back(&w.add(make_box({0.4f, 0.2f, 0.4f}, kOfCube), settings_of(kOfCube, 0.7f, 0.3f),
+                               {0, 0.101f + 0.2f * static_cast<float>(i), 0}));
+      w.run(300);
+      ASSERT_TRUE(stack[2]->asleep());
+      std::vector<float> before;
+      for (const SoftBody<3>* const body : stack) before.push_back(body->centre_of_mass().y());
+      btTransform pose = lift.getWorldTransform();
+      for (int i = 0; i < 480; ++i) {
+        pose.getOrigin() += btVector3(0, speed * kStep, 0);
+        lift.setWorldTransform(pose);
+        w.world.stepSimulation(kStep, 0);
+      }
+      w.run(60);
+      for (std::size_t i = 0; i < stack.size(); ++i)
+        EXPECT_NEAR(stack[i]->centre_of_mass().y() - before[i], 4 * speed, 0.1f * kOfCube)
+            << speed << " m/s, kinematic " << is_kinematic << ", body " << i;
+    }
+}
+
 /// Such as a level that is put somewhere else: it does not sweep through what lies between.
 TEST(MovingObstacles, WhatIsPutFarAwayPushesNothingOnItsWay) {
   ContactWorld w({0, 0, 0});
