@@ -12,57 +12,57 @@
 namespace softcell::ppu {
 namespace {
 
-template <typename Range, typename Item>
-bool contains(const Range& range, const Item& item) {
-  return std::ranges::find(range, item) != range.end();
+bool contains(std::span<const std::uint32_t> rigids, std::uint32_t rigid) {
+  return std::ranges::find(rigids, rigid) != rigids.end();
 }
 
 }  // namespace
 
+bool Box2dLinks::is_looked_up(const b2Body& body, std::uint32_t rigid) const {
+  return body.GetType() == b2_dynamicBody && !contains(attached_, rigid);
+}
+
 RigidLinks Box2dLinks::find(Box2dObstacles& obstacles, std::span<const std::uint32_t> attached, float step) {
+  attached_ = attached;
   touches_.clear();
-  contacts_.clear();
   rows_.clear();
-  joints_.clear();
   // Each body appends those that it touches or is joined to.
-  std::size_t first = 0;
+  std::uint32_t first = 0;
   for (int i = 0; i <= kFarthestTouch; ++i) {
     const auto for_each_new = [&](const auto& work) {
-      for (std::size_t rigid = first; rigid < obstacles.bodies().size(); ++rigid) {
-        b2Body& body = *obstacles.bodies()[rigid];
-        if (body.GetType() == b2_dynamicBody && !contains(attached, static_cast<std::uint32_t>(rigid)))
-          work(body);
-      }
+      for (std::uint32_t rigid = first; rigid < obstacles.bodies().size(); ++rigid)
+        if (is_looked_up(*obstacles.bodies()[rigid], rigid)) work(rigid);
     };
-    for_each_new([&](b2Body& body) { add_joints_of(body, obstacles, attached, step); });
-    const std::size_t end = obstacles.bodies().size();
-    for_each_new([&](b2Body& body) {
-      if (obstacles.rigid_of(body) < end) add_contacts_of(body, obstacles, attached);
+    for_each_new([&](std::uint32_t rigid) { add_joints_of(rigid, obstacles, step); });
+    const auto end = static_cast<std::uint32_t>(obstacles.bodies().size());
+    for_each_new([&](std::uint32_t rigid) {
+      if (rigid < end) add_contacts_of(rigid, obstacles);
     });
     first = end;
   }
   return {touches_, rows_};
 }
 
-void Box2dLinks::add_contacts_of(b2Body& body, Box2dObstacles& obstacles,
-                                 std::span<const std::uint32_t> attached) {
-  for (b2ContactEdge* edge = body.GetContactList(); edge != nullptr; edge = edge->next) {
+/// Bodies are looked up in the order of their indices, so both bodies of a contact are only if the other one's turn is later.
+void Box2dLinks::add_contacts_of(std::uint32_t rigid, Box2dObstacles& obstacles) {
+  for (b2ContactEdge* edge = obstacles.bodies()[rigid]->GetContactList(); edge != nullptr;
+       edge = edge->next) {
     b2Contact& contact = *edge->contact;
     const bool counts = contact.IsTouching() && contact.IsEnabled() && !contact.GetFixtureA()->IsSensor() &&
                         !contact.GetFixtureB()->IsSensor();
-    if (!counts || contains(contacts_, &contact)) continue;
-    contacts_.push_back(&contact);
-    if (!contains(attached, obstacles.rigid_of(*edge->other))) add(contact, obstacles);
+    if (!counts) continue;
+    const std::uint32_t other = obstacles.rigid_of(*edge->other);
+    if (contains(attached_, other) || (other < rigid && is_looked_up(*edge->other, other))) continue;
+    add(contact, obstacles);
   }
 }
 
-void Box2dLinks::add_joints_of(b2Body& body, Box2dObstacles& obstacles,
-                               std::span<const std::uint32_t> attached, float step) {
-  for (b2JointEdge* edge = body.GetJointList(); edge != nullptr; edge = edge->next) {
+void Box2dLinks::add_joints_of(std::uint32_t rigid, Box2dObstacles& obstacles, float step) {
+  for (b2JointEdge* edge = obstacles.bodies()[rigid]->GetJointList(); edge != nullptr; edge = edge->next) {
     b2Joint& joint = *edge->joint;
-    if (!joint.IsEnabled() || contains(joints_, &joint)) continue;
-    joints_.push_back(&joint);
-    if (contains(attached, obstacles.rigid_of(*edge->other))) continue;
+    if (!joint.IsEnabled()) continue;
+    const std::uint32_t other = obstacles.rigid_of(*edge->other);
+    if (contains(attached_, other) || (other < rigid && is_looked_up(*edge->other, other))) continue;
     // Joints see where a body is, and have no part in how the program moves it there.
     const auto rigid_of = [&](b2Body& at) {
       return obstacles.is_moved_by_place(at) ? JointRow::kWorld : obstacles.rigid_of(at);

@@ -21,15 +21,15 @@ class Box2dLinks {
   RigidLinks find(Box2dObstacles& obstacles, std::span<const std::uint32_t> attached, float step);
 
  private:
-  void add_contacts_of(b2Body& body, Box2dObstacles& obstacles, std::span<const std::uint32_t> attached);
-  void add_joints_of(b2Body& body, Box2dObstacles& obstacles, std::span<const std::uint32_t> attached,
-                     float step);
+  /// Whether the body's own contacts and joints are looked up.
+  bool is_looked_up(const b2Body& body, std::uint32_t rigid) const;
+  void add_contacts_of(std::uint32_t rigid, Box2dObstacles& obstacles);
+  void add_joints_of(std::uint32_t rigid, Box2dObstacles& obstacles, float step);
   void add(b2Contact& contact, Box2dObstacles& obstacles);
 
+  std::span<const std::uint32_t> attached_;  // during find()
   std::vector<RigidTouch> touches_;
   std::vector<JointRow> rows_;
-  std::vector<b2Contact*> contacts_;  // from which touches_ were made
-  std::vector<b2Joint*> joints_;      // from which rows_ were made
 };
 
 }  // namespace softcell::ppu

@@ -12,6 +12,7 @@
 
 #include "ppu/box2d/box2d_body.h"
 #include "ppu/numbers/hash_of_numbers.h"
+#include "ppu/numbers/keep_each_once.h"
 #include "softcell/base/assert.h"
 
 namespace softcell::ppu {
@@ -145,10 +146,11 @@ class Box2dObstacles::Collector final : public b2QueryCallback {
   bool ReportFixture(b2Fixture* fixture) override {
     if (fixture->IsSensor() != (of_.wanted_ == Fixtures::kSensors) || !may_touch(*fixture, filter_))
       return true;
-    const std::uint32_t body = of_.number(*fixture->GetBody()), number = Box2dObstacles::number(*fixture);
+    const KnownBody& body = of_.known_bodies_.at(fixture->GetBody());
+    const std::uint32_t number = Box2dObstacles::number(*fixture);
     for (int child = 0; child < fixture->GetShape()->GetChildCount(); ++child)
-      if (b2TestOverlap(of_.box_of_step(*fixture, child), box_))
-        found_.push_back({body, number, child, fixture});
+      if (b2TestOverlap(of_.box_of_step(body, *fixture, child), box_))
+        found_.push_back({body.number, number, child, fixture});
     return true;
   }
 
@@ -228,16 +230,16 @@ VelocityGain Box2dObstacles::gain_of(const b2Body& body) const {
 }
 
 /// Box2D has a box around the fixture's last place; for a body that moves, this also covers its motion.
-b2AABB Box2dObstacles::box_of_step(const b2Fixture& fixture, int child) const {
+b2AABB Box2dObstacles::box_of_step(const KnownBody& known, const b2Fixture& fixture, int child) const {
   b2AABB box = fixture.GetAABB(child);
   const b2Body& body = *fixture.GetBody();
-  const MovedByPlace* const moved = moved_by_place_of(body);
-  if (moved == nullptr && !is_under_way(body)) return box;
+  const std::optional<MovedByPlace>& moved = known.motion;
+  if (!moved && !is_under_way(body)) return box;
   const VelocityGain gain = gain_of(body);
   // It has come from there already.
-  const b2Vec2 way = moved != nullptr ? -step_ * b2Vec2(moved->velocity.x(), moved->velocity.y())
-                                      : step_ * (body.GetLinearVelocity() + gain.linear);
-  const float spin = moved != nullptr ? moved->spin.z() : body.GetAngularVelocity() + gain.angular;
+  const b2Vec2 way = moved ? -step_ * b2Vec2(moved->velocity.x(), moved->velocity.y())
+                           : step_ * (body.GetLinearVelocity() + gain.linear);
+  const float spin = moved ? moved->spin.z() : body.GetAngularVelocity() + gain.angular;
   const b2Vec2 centre = body.GetWorldCenter();
   const b2Vec2 arm = b2Max(b2Abs(box.lowerBound - centre), b2Abs(box.upperBound - centre));
   const float turn = step_ * std::abs(spin) * arm.Length();
@@ -290,8 +292,7 @@ void Box2dObstacles::add_near(const Bounds<3>& box, const Vector2f& middle, cons
   for (b2Body* const body : moving_)
     for (b2Fixture* fixture = body->GetFixtureList(); fixture != nullptr; fixture = fixture->GetNext())
       near.ReportFixture(fixture);
-  std::sort(found_.begin(), found_.end());
-  found_.erase(std::unique(found_.begin(), found_.end()), found_.end());
+  keep_each_once(found_);
   for (auto first = found_.begin(); first != found_.end();) {
     const bool is_chain = first->there->GetType() == b2Shape::e_chain;
     const auto end = is_chain ? std::find_if(first, found_.end(),
@@ -327,15 +328,17 @@ int Box2dObstacles::face_before(const Found& found, const Bounds<3>& box, const 
 }
 
 std::uint32_t Box2dObstacles::rigid_of(b2Body& body) {
-  const auto known = std::find(bodies_.begin(), bodies_.end(), &body);
-  if (known != bodies_.end()) return static_cast<std::uint32_t>(known - bodies_.begin());
+  KnownBody& known = known_bodies_.at(&body);
+  if (known.rigid_of_step == steps_) return known.rigid;
+  known.rigid_of_step = steps_;
+  known.rigid = static_cast<std::uint32_t>(bodies_.size());
   ContactRigid rigid;
-  rigid.number = number(body);
+  rigid.number = known.number;
   rigid.centre = lifted(body.GetWorldCenter());
   const VelocityGain gain = gain_of(body);
   rigid.velocity = lifted(body.GetLinearVelocity() + gain.linear);
   rigid.spin = {0, 0, body.GetAngularVelocity() + gain.angular};
-  if (const MovedByPlace* const moved = moved_by_place_of(body)) {
+  if (const std::optional<MovedByPlace>& moved = known.motion) {
     rigid.centre = moved->from.position;
     rigid.velocity = moved->velocity;
     rigid.spin = moved->spin;
@@ -350,7 +353,7 @@ std::uint32_t Box2dObstacles::rigid_of(b2Body& body) {
   rigids_.push_back(rigid);
   before_.push_back(rigid);
   bodies_.push_back(&body);
-  return static_cast<std::uint32_t>(rigids_.size() - 1);
+  return known.rigid;
 }
 
 Box2dObstacles::Shape& Box2dObstacles::next_shape() {

@@ -92,6 +92,8 @@ class Box2dObstacles {
   /// A body of the world.
   struct KnownBody {
     std::uint32_t number;
+    std::uint64_t rigid_of_step = 0;  // the number of the step in which it has the index `rigid`
+    std::uint32_t rigid = 0;
     std::uint64_t looked = 0;  // the number of the step that found `look`; 0: none has
     std::uint64_t look = 0;
     std::optional<FollowedPlace> place = {};  // if nothing moves it but the program by its place
@@ -103,7 +105,7 @@ class Box2dObstacles {
   void find_moved_by_place();
   const MovedByPlace* moved_by_place_of(const b2Body& body) const;
   VelocityGain gain_of(const b2Body& body) const;
-  b2AABB box_of_step(const b2Fixture& fixture, int child) const;
+  b2AABB box_of_step(const KnownBody& known, const b2Fixture& fixture, int child) const;
   int face_before(const Found& found, const Bounds<3>& box, const Eigen::Vector2f& middle) const;
   std::uint32_t obstacle_of(const Found& found, int face);
   std::uint32_t obstacle_of_chain(std::span<const Found> edges);

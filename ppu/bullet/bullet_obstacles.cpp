@@ -26,6 +26,7 @@
 #include "ppu/bullet/may_move.h"
 #include "ppu/bullet/mesh_triangles.h"
 #include "ppu/numbers/deterministic_math.h"
+#include "ppu/numbers/keep_each_once.h"
 #include "ppu/surfaces/round_edges.h"
 #include "softcell/base/assert.h"
 
@@ -365,9 +366,7 @@ void BulletObstacles::add_near(const Bounds<3>& box, int group, int mask,
   for (const Leaving& leaving : leaving_)
     if (overlap(leaving.box, box)) near.process(leaving.proxy);
   // Sorts by the order in which objects were added, so that the result does not depend on trees.
-  std::sort(found_.begin(), found_.end(),
-            [](const auto* a, const auto* b) { return a->m_uniqueId < b->m_uniqueId; });
-  found_.erase(std::unique(found_.begin(), found_.end()), found_.end());
+  keep_each_once(found_, [](const auto* a, const auto* b) { return a->m_uniqueId < b->m_uniqueId; });
   for (const btBroadphaseProxy* const proxy : found_) {
     auto& object = *static_cast<btCollisionObject*>(proxy->m_clientObject);
     if (object.hasContactResponse() == (role_ == Objects::kSolid))

@@ -8,6 +8,7 @@
 
 #include "ppu/bullet/may_move.h"
 #include "ppu/contacts/attachment_patch.h"
+#include "ppu/numbers/turned_towards.h"
 #include "softcell/base/assert.h"
 
 namespace softcell::ppu {
@@ -274,9 +275,7 @@ void SurfaceAttachments::Hold::advance(float step) {
   const float share = arrives ? 1.0f : step / seconds;
   frame.position =
       arrives ? goal_position : Eigen::Vector3f(frame.position + share * (goal_position - frame.position));
-  const float way = rotation.dot(goal_rotation) < 0 ? -1.0f : 1.0f;
-  rotation.coeffs() += share * (way * goal_rotation.coeffs() - rotation.coeffs());
-  rotation.normalize();
+  rotation = turned_towards(rotation, goal_rotation, share);
   frame.rotation = rotation.toRotationMatrix();
   frame.end_position = frame.position;
   frame.end_rotation = frame.rotation;

@@ -1,5 +1,4 @@
 #include "ppu/contacts/attachment_patch.h"
-#include "softcell/base/text.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,6 +7,9 @@
 #include <string>
 #include <utility>
 #include <vector>
+
+#include "ppu/numbers/keep_each_once.h"
+#include "softcell/base/text.h"
 
 namespace softcell::ppu {
 namespace {
@@ -51,8 +53,7 @@ std::vector<std::uint32_t> corners_of(const std::vector<std::uint32_t>& cells,
 
 template <int kDimension>
 PatchParticles<kDimension> made_of(std::vector<std::uint32_t> particles, const SoftBody<kDimension>& body) {
-  std::sort(particles.begin(), particles.end());
-  particles.erase(std::unique(particles.begin(), particles.end()), particles.end());
+  keep_each_once(particles);
   PatchParticles<kDimension> result;
   for (const std::uint32_t particle : particles) {
     result.positions.push_back(body.position(particle));

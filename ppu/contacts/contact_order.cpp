@@ -4,6 +4,8 @@
 #include <tuple>
 #include <utility>
 
+#include "ppu/numbers/keep_each_once.h"
+
 namespace softcell::ppu {
 namespace {
 
@@ -47,10 +49,9 @@ void ContactOrder::arrange(std::span<const ContactBody> bodies, std::span<const 
   units.clear();
   for (std::uint32_t i = 0; i < pairs.size(); ++i) units.push_back(unit_of(i));
   // A slab with itself comes first: it has the most pairs.
-  std::sort(units.begin(), units.end(), [&](std::uint32_t a, std::uint32_t b) {
+  keep_each_once(units, [&](std::uint32_t a, std::uint32_t b) {
     return std::pair(a / slabs_ != a % slabs_, a) < std::pair(b / slabs_ != b % slabs_, b);
   });
-  units.erase(std::unique(units.begin(), units.end()), units.end());
   const auto taken = [&](std::uint32_t stage, std::uint32_t slab) {
     return taken_[std::size_t{stage} * slabs_ + slab];
   };

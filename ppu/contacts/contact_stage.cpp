@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "ppu/contacts/find_contacts.h"
+#include "ppu/numbers/keep_each_once.h"
 #include "softcell/base/assert.h"
 
 namespace softcell::ppu {
@@ -457,10 +458,6 @@ void ContactStage::remember_who_presses(std::span<const ContactRigid> rigids) {
 
 void ContactStage::find_touched_cells() {
   touched_.resize(bodies_.size());
-  const auto keep_each_once = [](std::vector<std::uint32_t>& cells) {
-    std::sort(cells.begin(), cells.end());
-    cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
-  };
   // Most cells are touched at several points. Room for each cell twice is enough.
   const auto add = [&](std::uint32_t body, std::uint32_t cell) {
     std::vector<std::uint32_t>& cells = touched_[body];

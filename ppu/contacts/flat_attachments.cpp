@@ -1,7 +1,6 @@
 #include "ppu/contacts/flat_attachments.h"
 
-#include <algorithm>
-
+#include "ppu/numbers/keep_each_once.h"
 #include "ppu/surfaces/flat_layer.h"
 
 namespace softcell::ppu {
@@ -35,8 +34,7 @@ void FlatAttachments::add(const AttachmentInStep<2>& attachment) {
 }
 
 void FlatAttachments::begin(InPlane& plane, const AttachedBody<3>& body) {
-  std::ranges::sort(plane.held);
-  plane.held.erase(std::unique(plane.held.begin(), plane.held.end()), plane.held.end());
+  keep_each_once(plane.held);
   const std::size_t particles = body.positions.size() / 2;
   plane.positions.resize(particles);
   plane.velocities.resize(particles);

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "ppu/contacts/crushed_cells.h"
+#include "ppu/numbers/keep_each_once.h"
 #include "ppu/surfaces/inner_places.h"
 #include "softcell/base/assert.h"
 
@@ -50,9 +51,8 @@ bool SharpContacts::keep(std::span<SoftContact> contacts, const ContactBody& bod
   if (std::ranges::none_of(contacts, is_sharp)) return false;
   cells_.clear();
   for (const SoftContact& contact : contacts) cells_.push_back(contact.a.cell);
-  std::ranges::sort(cells_);
-  const auto distinct = std::unique(cells_.begin(), cells_.end()) - cells_.begin();
-  if (are_few(static_cast<std::size_t>(distinct), body)) return true;
+  keep_each_once(cells_);
+  if (are_few(cells_.size(), body)) return true;
   for (SoftContact& contact : contacts) contact.room = SoftContact::kNoLimit;
   return false;
 }

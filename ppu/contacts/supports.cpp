@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <tuple>
 
+#include "ppu/numbers/keep_each_once.h"
 #include "ppu/numbers/sorted_lists.h"
 #include "softcell/base/assert.h"
 
@@ -24,10 +25,10 @@ void Supports::hold(std::span<ContactRigid> rigids, const RigidLinks& links, std
   find_parts(rigids, links);
   pressed_.clear();
   for (const Press& press : presses) pressed_.push_back(press.rigid);
-  std::ranges::sort(pressed_, {}, [&](std::uint32_t rigid) {
+  const auto place = [&](std::uint32_t rigid) {
     return std::tuple(together_.find(rigid), part_of_[rigid], rigid);
-  });
-  pressed_.erase(std::unique(pressed_.begin(), pressed_.end()), pressed_.end());
+  };
+  keep_each_once(pressed_, [&](std::uint32_t a, std::uint32_t b) { return place(a) < place(b); });
   for (std::size_t i = 0; i < pressed_.size();) {
     const std::uint32_t heap = together_.find(pressed_[i]), part = part_of_[pressed_[i]];
     set_.clear();

@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "ppu/numbers/keep_each_once.h"
 #include "softcell/base/assert.h"
 
 namespace softcell::ppu {
@@ -149,8 +150,7 @@ void CellCurves::add_vertex(Skin2d& skin, std::uint32_t cell, const Vector2f& at
     near_.clear();
     for (const std::uint32_t particle : lattice_.corners[cell])
       near_.insert(near_.end(), cells_of_[particle].begin(), cells_of_[particle].end());
-    std::ranges::sort(near_);
-    near_.erase(std::unique(near_.begin(), near_.end()), near_.end());
+    keep_each_once(near_);
     // The weight of a cell grows without limit near the cell, and is 0 at the reach.
     const auto weight = [&](std::uint32_t other) {
       const float far = std::max(distance(other, at), kInside);

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "ppu/lattice/links.h"
+#include "ppu/numbers/keep_each_once.h"
 #include "ppu/numbers/sorted_lists.h"
 #include "softcell/base/assert.h"
 #include "softcell/base/text.h"
@@ -23,12 +24,6 @@ using GridIndex = typename Lattice<kDimension>::GridIndex;
 constexpr auto kPrecedes = [](const auto& a, const auto& b) {
   return std::lexicographical_compare(a.data(), a.data() + a.size(), b.data(), b.data() + b.size());
 };
-
-template <class Index>
-void sort_and_unite(std::vector<Index>& indices) {
-  std::sort(indices.begin(), indices.end(), kPrecedes);
-  indices.erase(std::unique(indices.begin(), indices.end()), indices.end());
-}
 
 template <class Index>
 Index corner_of(const Index& cell, unsigned k) {
@@ -72,7 +67,7 @@ std::vector<GridIndex<kDimension>> distinct_corners(const std::vector<GridIndex<
   corners.reserve(Lattice<kDimension>::kCorners * cells.size());
   for (const GridIndex<kDimension>& cell : cells)
     for (unsigned k = 0; k < Lattice<kDimension>::kCorners; ++k) corners.push_back(corner_of(cell, k));
-  sort_and_unite(corners);
+  keep_each_once(corners, kPrecedes);
   return corners;
 }
 
@@ -102,7 +97,7 @@ Lattice<kDimension> make_lattice(std::span<const GridIndex<kDimension>> cells, f
   lattice.origin = origin;
   lattice.cells.assign(cells.begin(), cells.end());
   check_extent(lattice.cells);
-  sort_and_unite(lattice.cells);
+  keep_each_once(lattice.cells, kPrecedes);
   check_particles<kDimension>(lattice.cells.size());  // each cell has a low corner of its own
   lattice.particles = distinct_corners<kDimension>(lattice.cells);
   check_particles<kDimension>(lattice.particles.size());
@@ -136,8 +131,7 @@ Csr find_neighbours(const Lattice<kDimension>& lattice) {
     for (const std::uint32_t cell : around[particle])
       for (const std::uint32_t other : lattice.corners[cell])
         if (other != particle) list.push_back(other);
-    std::sort(list.begin(), list.end());
-    list.erase(std::unique(list.begin(), list.end()), list.end());
+    keep_each_once(list);
     neighbours.push(list);
   }
   return neighbours;

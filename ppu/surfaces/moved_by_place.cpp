@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
+#include "ppu/numbers/turned_towards.h"
 #include "softcell/base/assert.h"
 
 namespace softcell::ppu {
@@ -26,11 +27,8 @@ bool is_elsewhere(const Pose& from, const Pose& to, float most) {
 }
 
 Pose between(const Pose& from, const Pose& to, float share) {
-  const Quaternionf begin(from.rotation), end(to.rotation);
-  const float way = begin.dot(end) < 0 ? -1.0f : 1.0f;
-  Quaternionf turned;
-  turned.coeffs() = begin.coeffs() + share * (way * end.coeffs() - begin.coeffs());
-  return {from.position + share * (to.position - from.position), turned.normalized().toRotationMatrix()};
+  const Quaternionf turned = turned_towards(Quaternionf(from.rotation), Quaternionf(to.rotation), share);
+  return {from.position + share * (to.position - from.position), turned.toRotationMatrix()};
 }
 
 }  // namespace
