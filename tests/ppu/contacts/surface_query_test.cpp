@@ -17,6 +17,7 @@
 #include "ppu/mesh/solid.h"
 #include "ppu/surfaces/triangle_distance.h"
 #include "softcell/spe_bodies/spe_runtime.h"
+#include "support/first_touch.h"
 
 namespace softcell::ppu {
 namespace {
@@ -185,22 +186,6 @@ TEST(SurfaceQuery, KnowsWhatIsInsideWhereTheSurfaceLiesWithinTheBody) {
   }
 }
 
-/// @return  the first share of the way, in small steps, at which a triangle is within the radius of the centre; beyond 1: none is
-double first_touch(const TriangleMesh& mesh, const Vector3f& from, const Vector3f& to, double radius) {
-  constexpr int kSteps = 400;
-  for (int i = 0; i <= kSteps; ++i) {
-    const double share = static_cast<double>(i) / kSteps;
-    const Eigen::Vector3d centre = from.cast<double>() + share * (to - from).cast<double>();
-    for (const auto& t : mesh.triangles) {
-      const std::array<Eigen::Vector3d, 3> corners = {mesh.positions[t[0]].cast<double>(),
-                                                      mesh.positions[t[1]].cast<double>(),
-                                                      mesh.positions[t[2]].cast<double>()};
-      if ((nearest_point<double>(corners, centre) - centre).norm() <= radius) return share;
-    }
-  }
-  return 2;
-}
-
 TEST(SurfaceQuery, AMovedSphereStopsWhereItTouchesPiecesOfABody) {
   ContactWorld w({0, 0, 0});
   SoftBody<3>& body =
@@ -219,8 +204,8 @@ TEST(SurfaceQuery, AMovedSphereStopsWhereItTouchesPiecesOfABody) {
       const Vector3f aside = vector(1).normalized();
       const Vector3f from = middle + 1.2f * aside, to = middle - 1.2f * aside + vector(1);
       const float radius = k % 2 == 0 ? 0.01f : 0.1f;
-      const double touch = first_touch(mesh, from, to, radius),
-                   beyond = first_touch(mesh, from, to, 0.98f * radius);
+      const double touch = tests::first_touch(mesh, from, to, radius),
+                   beyond = tests::first_touch(mesh, from, to, 0.98f * radius);
       const auto hit = query.cast_sphere(from, to, radius);
       if (hit) {
         EXPECT_NEAR(hit->share, touch, 0.005f) << "piece " << i << ", sphere " << k;
