@@ -813,7 +813,8 @@ TEST(ShiftOrigin, MovesEverythingAndPushesNothing) {
       const auto expected = where_they_are(method, {0, 0}), shifted = where_they_are(method, shift);
       EXPECT_GT(expected[2].x(), 6.8f) << "the wall pushes nothing";
       for (std::size_t i = 0; i < expected.size(); ++i)
-        EXPECT_LT((shifted[i] - expected[i]).norm(), 0.01f) << i << " shifted by " << shift.transpose()
+        EXPECT_LT((shifted[i] - expected[i]).norm(), 0.01f)
+            << i << " shifted by " << shift.transpose()
             << (method == ContactMethod::kSpheres ? ", circles" : ", surfaces");
     }
   World2d w(9.81f, ContactMethod::kSurface);
