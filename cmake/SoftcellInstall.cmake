@@ -60,6 +60,7 @@ macro(softcell_install_component component)
       LIBS -lsoftcell_jobs -lsoftcell_spu_kernels -lsoftcell_ls_sim -lsoftcell_dma -lsoftcell_base -lboost_context -ldw -lelf -pthread)
   elseif("${component}" STREQUAL "libspe2")
     # One library, as on the Cell; softcell's own are inside it.
+    set_property(GLOBAL APPEND PROPERTY SOFTCELL_INSTALLED softcell_libspe2 softcell_allocations softcell_low_memory)
     install(TARGETS softcell_libspe2 softcell_psl1ght EXPORT softcell_libspe2 LIBRARY COMPONENT development)
     install(EXPORT softcell_libspe2 NAMESPACE softcell:: DESTINATION ${SOFTCELL_INSTALL_PACKAGE}
       FILE softcell_libspe2.cmake COMPONENT development)

@@ -1,7 +1,8 @@
 # Debian packages, made by `cpack` in the build folder (ci/test-packages makes them and tries them in a clean Debian):
 #
 #   softcell         the command
-#   libsoftcell-dev  libraries (static: no program needs softcell to be installed), headers, CMake package, pkg-config files
+#   libsoftcell-dev  libraries (static, but for libspe2 and what is loaded with it), headers, CMake package, pkg-config files, commands of a
+#                    toolchain
 #   softcell-doc     licence, pages, examples
 # Each with the licence, where Debian has it.
 foreach(pair softcell:command libsoftcell-dev:development softcell-doc:documentation)
@@ -29,9 +30,9 @@ set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_COMMAND_PACKAGE_NAME softcell)
 set(CPACK_DEBIAN_COMMAND_PACKAGE_SECTION devel)
 set(CPACK_DEBIAN_COMMAND_PACKAGE_SHLIBDEPS ON)
-# Loaded at run time, or run: invisible to dpkg-shlibdeps.
+# Loaded at run time, run, or read by scenes (glmark2-data): invisible to dpkg-shlibdeps.
 set(CPACK_DEBIAN_COMMAND_PACKAGE_DEPENDS "libosmesa6")
-set(CPACK_DEBIAN_COMMAND_PACKAGE_RECOMMENDS "fonts-dejavu-core, libegl1, libgl1-mesa-dri")
+set(CPACK_DEBIAN_COMMAND_PACKAGE_RECOMMENDS "fonts-dejavu-core, glmark2-data, libegl1, libgl1-mesa-dri")
 set(CPACK_DEBIAN_COMMAND_PACKAGE_SUGGESTS "ffmpeg, libsoftcell-dev, softcell-doc")
 
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libsoftcell-dev)
@@ -46,6 +47,6 @@ set(CPACK_DEBIAN_DOCUMENTATION_PACKAGE_SECTION doc)
 set(CPACK_DEBIAN_DOCUMENTATION_PACKAGE_ARCHITECTURE all)
 
 set(CPACK_COMPONENT_COMMAND_DESCRIPTION "The command softcell: demos, kernels on a simulated SPE, benchmarks and reports.")
-set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "Static libraries, headers and kernel SDK of softcell, for programs of one's own.")
+set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "Libraries, headers, kernel SDK and toolchain commands of softcell, for programs of one's own.")
 set(CPACK_COMPONENT_DOCUMENTATION_DESCRIPTION "Pages and examples of softcell.")
 include(CPack)

@@ -66,6 +66,22 @@ TEST(RunVerb, EndsAsTheProgramDoes) {
       << unknown.output;
 }
 
+TEST(RunVerb, NamesTheLibraryThatIsNotInstalled) {
+  const ScratchFolder folder;
+  std::filesystem::create_directory(folder / "bin");
+  const std::string copy = folder / "bin/softcell";
+  std::filesystem::copy_file(SOFTCELL_COMMAND, copy);
+  for (const std::string name : {"allocations", "low_memory"}) {
+    const std::string option = name == "allocations" ? "--allocations" : "--low-memory";
+    const CommandResult run = run_shell(copy + " run " + option + " -- true");
+    EXPECT_EQ(run.status, 1) << run.output;
+    EXPECT_TRUE(has(run, option + ": there is no library " + (folder / "lib/softcell/libsoftcell_") + name +
+                             ".so; it comes with softcell's libraries, on Debian in the package "
+                             "libsoftcell-dev\n"))
+        << run.output;
+  }
+}
+
 TEST(RunVerb, FindsAForgottenWaitOfACheckedProgram) {
   const ScratchFolder folder;
   const CommandResult run = run_softcell("run --checked --json " + (folder / "r.json") + " -- " + kForgets);

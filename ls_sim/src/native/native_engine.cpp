@@ -345,6 +345,8 @@ std::optional<RunResult> NativeEngine::answer() {
     if (code == assisted::kC99Call || code == assisted::kPosixCall) {
       assisted::AssistedCalls calls(assisted::files_of_process(), local_store_.bytes(),
                                     assisted::CallerKind::kHost);
+      if (accesses_ != nullptr)
+        calls.on_write([this](std::uint32_t lsa) { accesses_->on_host_write({lsa}, 1); });
       context_.reply = calls.serve(code, context_.value);
       return std::nullopt;
     }

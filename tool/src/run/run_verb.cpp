@@ -30,12 +30,15 @@ constexpr std::uint64_t kDeadlineOfTurns = 30'000;
 /// The path of a library that is loaded before those of the program.
 std::string library_for(const char* option, const std::string& name) {
   const auto folder = std::filesystem::read_symlink("/proc/self/exe").parent_path();
+  std::filesystem::path file;
   for (const char* place : {SOFTCELL_ALLOCATIONS_BUILT, SOFTCELL_ALLOCATIONS_INSTALLED}) {
-    const auto file = (folder / place / name).lexically_normal();
+    file = (folder / place / name).lexically_normal();
     if (std::filesystem::exists(file)) return file.string();
   }
-  throw std::runtime_error(fmt::format("{}: {} was not found where softcell is installed, under {}", option,
-                                       name, folder.string()));
+  throw std::runtime_error(
+      fmt::format("{}: there is no library {}; it comes with softcell's libraries, on Debian in the package "
+                  "libsoftcell-dev",
+                  option, file.string()));
 }
 
 /// The value of LD_PRELOAD; empty: it is not changed.

@@ -101,6 +101,8 @@ class AccessObserver {
  public:
   virtual ~AccessObserver() = default;
   virtual void on_access(const Access& access) = 0;
+  /// The host has written to this range, in a call that it serves.
+  virtual void on_host_write(dma::LocalStoreAddress, std::uint32_t) {}
 
   // Only for programs for the SPU:
 
@@ -108,8 +110,6 @@ class AccessObserver {
   virtual void on_instruction(const ExecutedInstruction&) {}
   /// The undefined bits of the quadword at this address.
   virtual UndefinedBits undefined_bits(dma::LocalStoreAddress) { return {}; }
-  /// The host has written to this range, in a call that it serves.
-  virtual void on_host_write(dma::LocalStoreAddress, std::uint32_t) {}
 };
 
 /// Observes where jobs begin and end inside a resident kernel. Called by the thread that runs the SPE.
