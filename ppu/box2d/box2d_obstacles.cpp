@@ -142,15 +142,13 @@ class Box2dObstacles::Collector final : public b2QueryCallback {
   Collector(const CollisionFilter& filter, const b2AABB& box, const Box2dObstacles& of,
             std::vector<Found>& found)
       : filter_(filter), box_(box), of_(of), found_(found) {}
-  /// Adds each child whose box is near.
+  /// Adds each child whose box is near. Fixtures that move are looked up apart.
   bool ReportFixture(b2Fixture* fixture) override {
-    if (fixture->IsSensor() != (of_.wanted_ == Fixtures::kSensors) || !may_touch(*fixture, filter_))
-      return true;
     const KnownBody& body = of_.known_bodies_.at(fixture->GetBody());
-    const std::uint32_t number = Box2dObstacles::number(*fixture);
+    if (body.moves || !of_.wants(*fixture) || !may_touch(*fixture, filter_)) return true;
     for (int child = 0; child < fixture->GetShape()->GetChildCount(); ++child)
-      if (b2TestOverlap(of_.box_of_step(body, *fixture, child), box_))
-        found_.push_back({body.number, number, child, fixture});
+      if (b2TestOverlap(fixture->GetAABB(child), box_))
+        found_.push_back({body.number, Box2dObstacles::number(*fixture), child, fixture});
     return true;
   }
 
@@ -176,15 +174,29 @@ void Box2dObstacles::begin(b2World& world, float step, float layer) {
   known_.clear();
   shapes_used_ = 0;
   number_bodies();
+  if (wanted_ == Fixtures::kSolid) find_moved_by_place();
   moving_.clear();
-  for (b2Body* body = world.GetBodyList(); body != nullptr; body = body->GetNext())
-    if (is_under_way(*body)) moving_.push_back(body);
-  find_moved_by_place();
+  for (b2Body* body = world.GetBodyList(); body != nullptr; body = body->GetNext()) {
+    KnownBody& known = known_bodies_.at(body);
+    known.moves = known.motion || is_under_way(*body);
+    if (known.moves) add_moving(*body, known);
+  }
+}
+
+/// The boxes of all that moves are made once, not once for each soft body.
+void Box2dObstacles::add_moving(b2Body& body, const KnownBody& known) {
+  std::uint32_t behind = 0;
+  for (const b2Fixture* next = body.GetFixtureList(); next != nullptr; next = next->GetNext()) ++behind;
+  for (b2Fixture* fixture = body.GetFixtureList(); fixture != nullptr; fixture = fixture->GetNext()) {
+    --behind;
+    if (!wants(*fixture)) continue;
+    for (int child = 0; child < fixture->GetShape()->GetChildCount(); ++child)
+      moving_.push_back({box_of_step(known, *fixture, child), Found{known.number, behind, child, fixture}});
+  }
 }
 
 /// Moved bodies lie where the program has put them in Box2D's tree, too.
 void Box2dObstacles::find_moved_by_place() {
-  if (wanted_ != Fixtures::kSolid) return;
   for (b2Body* body = world_->GetBodyList(); body != nullptr; body = body->GetNext()) {
     KnownBody& known = known_bodies_.at(body);
     if (!may_be_moved_by_place(*body)) {
@@ -200,7 +212,6 @@ void Box2dObstacles::find_moved_by_place() {
       known.place->stand();
     } else {
       known.motion = known.place->follow(pose, size_of(*body), step_);
-      if (known.motion) moving_.push_back(body);
     }
   }
 }
@@ -242,7 +253,6 @@ b2AABB Box2dObstacles::box_of_step(const KnownBody& known, const b2Fixture& fixt
   b2AABB box = fixture.GetAABB(child);
   const b2Body& body = *fixture.GetBody();
   const std::optional<MovedByPlace>& moved = known.motion;
-  if (!moved && !is_under_way(body)) return box;
   const VelocityGain gain = gain_of(body);
   // It has come from there already.
   const b2Vec2 way = moved ? -step_ * b2Vec2(moved->velocity.x(), moved->velocity.y())
@@ -297,9 +307,9 @@ void Box2dObstacles::add_near(const Bounds<3>& box, const Vector2f& middle, cons
   found_.clear();
   Collector near(filter, query, *this, found_);
   world_->QueryAABB(&near, query);
-  for (b2Body* const body : moving_)
-    for (b2Fixture* fixture = body->GetFixtureList(); fixture != nullptr; fixture = fixture->GetNext())
-      near.ReportFixture(fixture);
+  for (const Moving& moving : moving_)
+    if (b2TestOverlap(moving.box, query) && may_touch(*moving.found.there, filter))
+      found_.push_back(moving.found);
   keep_each_once(found_);
   for (auto first = found_.begin(); first != found_.end();) {
     const bool is_chain = first->there->GetType() == b2Shape::e_chain;

@@ -84,6 +84,11 @@ class Box2dObstacles {
     b2Fixture* there;
     auto operator<=>(const Found&) const = default;
   };
+  /// What moves in this substep.
+  struct Moving {
+    b2AABB box;  // around it and its way
+    Found found;
+  };
   /// An obstacle of this substep.
   struct Known {
     const b2Fixture* fixture;
@@ -100,11 +105,14 @@ class Box2dObstacles {
     std::uint64_t look = 0;
     std::optional<FollowedPlace> place = {};  // if nothing moves it but the program by its place
     std::optional<MovedByPlace> motion = {};  // in this step
+    bool moves = false;                       // likewise
   };
   class Collector;
 
   void number_bodies();
   void find_moved_by_place();
+  void add_moving(b2Body& body, const KnownBody& known);
+  bool wants(const b2Fixture& fixture) const { return fixture.IsSensor() == (wanted_ == Fixtures::kSensors); }
   const MovedByPlace* moved_by_place_of(const b2Body& body) const;
   VelocityGain gain_of(const b2Body& body) const;
   b2AABB box_of_step(const KnownBody& known, const b2Fixture& fixture, int child) const;
@@ -131,7 +139,7 @@ class Box2dObstacles {
   std::uint64_t steps_ = 0;
   std::uint32_t next_number_ = 0;
   std::vector<b2Body*> unknown_;
-  std::vector<b2Body*> moving_;  // in this substep
+  std::vector<Moving> moving_;
   std::vector<Found> found_;
   std::vector<Known> known_;
   std::deque<Shape> shapes_;  // obstacles point into them
