@@ -24,6 +24,8 @@ struct SoftContact {
   Eigen::Vector3f normal{0, 1, 0};  ///< from b to a
   float least_velocity = 0;         ///< m/s along the normal, of a against b
   float depth = 0;                  ///< metres of penetration, negative if they are apart
+  /// Metres along the normal, above the surface of a rigid b: where `point` would be at the substep's end without contacts.
+  float above = 0;
   float friction = 0;
   /// Metres that body a may move on as a whole before something sharp crushes its cells (sharp_contacts.h); kNoLimit: nothing sharp.
   float room = kNoLimit;

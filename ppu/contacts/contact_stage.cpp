@@ -823,21 +823,20 @@ void ContactStage::find_islands(DisjointSets& islands) const {
 void ContactStage::append_contacts(std::vector<PressingContact>& contacts) const {
   for (std::size_t i = 0; i < group_count_; ++i) {
     const Group& group = groups_[i];
-    const auto append = [&](std::size_t c, float impulse, const auto& point, const auto& normal) {
-      if (!(impulse > 0)) return;
-      const std::uint32_t rigid = group.with_rigid ? group.contacts[c].rigid : 0;
-      contacts.push_back(
-          {group.a, group.b, group.with_rigid, rigid, Vector3f(point), Vector3f(normal), impulse});
+    const auto append = [&](float impulse, std::uint32_t rigid, const Vector3f& point,
+                            const Vector3f& normal) {
+      if (impulse > 0)
+        contacts.push_back({group.a, group.b, group.with_rigid, rigid, point, normal, impulse});
     };
-    // Contacts with rigid bodies were found here, even if the worker has solved them.
-    if (group.by_worker) {
-      for (std::size_t c = 0; c < group.solved.contacts.size(); ++c) {
+    for (std::size_t c = 0; c < group.size(); ++c) {
+      if (group.by_worker && !group.with_rigid) {
         const spu::SolveContact& contact = group.solved.contacts[c];
-        append(c, contact.impulse, contact.point, contact.normal);
+        append(contact.impulse, 0, Vector3f(contact.point), Vector3f(contact.normal));
+      } else {  // contacts with rigid bodies were found here, even if the worker has solved them
+        const SoftContact& contact = group.contacts[c];
+        const Vector3f on_rigid = contact.point - contact.above * contact.normal;
+        append(group.impulse(c), contact.rigid, group.with_rigid ? on_rigid : contact.point, contact.normal);
       }
-    } else {
-      for (std::size_t c = 0; c < group.contacts.size(); ++c)
-        append(c, group.contacts[c].impulse, group.contacts[c].point, group.contacts[c].normal);
     }
   }
   bounces_.for_each_impulse([&](const BounceContact& bounce, float impulse) {

@@ -231,7 +231,9 @@ class ObstacleContacts {
         const Way way = way_of(from, to);
         const float spacing = body_.spacing(), reach_of_point = kNear * spacing - point.allowance;
         const auto arrival = arrive(obstacle_, way.from, way.to - way.from, reach_of_point, spacing);
-        if (arrival) add(point.anchor, to, hit_of(point, way, *arrival, cell));
+        if (!arrival) return;
+        const Hit hit = hit_of(point, way, *arrival, cell);
+        add(point.anchor, to, hit, hit.end - point.allowance);
       });
     });
     for (const ObstacleEdge& edge : obstacle_.edges) try_edge(edge, reach);
@@ -359,7 +361,7 @@ class ObstacleContacts {
     for (const EndCells::PointAtTriangle& at : cells_.near_triangles)
       if (const auto hit = ObstacleTriangle(obstacle_, triangles, at.triangle)
                                .meet({at.from, at.to}, at.inside, body_.spacing(), at.front))
-        add(at.point->anchor, at.point->anchor.of(body_.ends), *hit);
+        add(at.point->anchor, at.point->anchor.of(body_.ends), *hit, hit->end);
     try_edges_of_triangles(triangles, reach);
   }
 
@@ -551,13 +553,15 @@ class ObstacleContacts {
     });
   }
 
-  void add(const Anchor& anchor, const Vector3f& point, const Hit& hit) {
+  /// @param above  metres, of the point above the obstacle at the substep's end; hit.end, less the allowance if that counts in it
+  void add(const Anchor& anchor, const Vector3f& point, const Hit& hit, float above) {
     SoftContact& contact = contacts_.emplace_back();
     contact.a = body_.model->held(anchor);
     contact.rigid = obstacle_.rigid;
     contact.point = point;
     contact.normal = obstacle_.rotation * hit.normal;
     const Vector3f v = contact.a.of(body_.velocities) - rigid_.velocity_at(point);
+    contact.above = above;
     complete(contact, hit.end, contact.normal.dot(v), friction_, step_);
   }
 
