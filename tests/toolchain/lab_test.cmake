@@ -155,3 +155,11 @@ says(2 "is no name of a variable" ${BIN}/softcell-embedspu 1st ${lab}/whole ${la
 says(2 "is no ELF file" ${BIN}/softcell-embedspu name ${lab}/Makefile ${lab}/e.o)
 says(2 "cannot read" ${BIN}/softcell-embedspu name ${lab}/nothing ${lab}/e.o)
 says(2 "-m32: softcell's libspe2 has 64 bits" ${BIN}/softcell-embedspu -m32 name ${lab}/whole ${lab}/e.o)
+
+# A signal leaves no temporary files. The compiler waits for a header that nobody writes.
+file(WRITE ${lab}/waits.c "#include \"never_written.h\"\nint main(void) { return 0; }\n")
+foreach(signal INT TERM HUP)
+  step("nothing is left after SIG${signal}" sh -c "cd ${lab} && rm -rf temporary never_written.h && mkdir temporary && mkfifo never_written.h
+    TMPDIR=$PWD/temporary timeout -s ${signal} 0.5 ${gcc} waits.c -o waits
+    test $? = 124 -a ! -e waits && ls -A temporary && test -z \"$(ls -A temporary)\"")
+endforeach()
