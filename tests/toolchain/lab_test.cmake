@@ -94,6 +94,11 @@ step("a function of the library's name" ${gcc} -w ${lab}/own.c -o ${lab}/own)
 says(1 "ended with status 7" ${BIN}/softcell spu run ${lab}/own)
 says(1 "ended with status 7" ${BIN}/softcell spu run --checked ${lab}/own)
 
+# A standard stream that a program reopens is its own, and not that of the figures.
+file(WRITE ${lab}/reopens.c "#include <stdio.h>\nint main(void) { freopen(\"reopened.txt\", \"w\", stdout); puts(\"in a file\"); return 0; }\n")
+step("a program that reopens standard output" ${gcc} ${lab}/reopens.c -o ${lab}/reopens)
+says(0 "local store: text[^\n]*\nin a file\n$" sh -c "cd ${lab} && ${BIN}/softcell spu run reopens && cat reopened.txt")
+
 # A main in an archive, and none.
 file(WRITE ${lab}/main_of_archive.c "int main(void) { return 6; }\n")
 step("an object with a main" ${gcc} -c ${lab}/main_of_archive.c -o ${lab}/main_of_archive.o)
