@@ -73,7 +73,8 @@ macro(softcell_install_component component)
       LIBS -no-pie -Wl,--no-as-needed -L\${prefix}/${CMAKE_INSTALL_LIBDIR}/softcell -lsoftcell_low_memory -lspe2
         -Wl,-rpath,\${prefix}/${CMAKE_INSTALL_LIBDIR}/softcell -Wl,-rpath,\${libdir})
     install(FILES ${PROJECT_SOURCE_DIR}/ppu/libspe2/include/libspe2.h ${PROJECT_SOURCE_DIR}/ppu/libspe2/include/libspe2-types.h
-      ${PROJECT_SOURCE_DIR}/ppu/libspe2/include/cbea_map.h ${PROJECT_SOURCE_DIR}/ppu/libspe2/include/ppu_intrinsics.h
+      ${PROJECT_SOURCE_DIR}/ppu/libspe2/include/cbea_map.h ${PROJECT_SOURCE_DIR}/ppu/libspe2/include/cbe_mfc.h
+      ${PROJECT_SOURCE_DIR}/ppu/libspe2/include/ppu_intrinsics.h
       ${PROJECT_SOURCE_DIR}/ppu/libspe2/include/libmisc.h ${PROJECT_SOURCE_DIR}/ppu/libspe2/include/malloc_align.h
       ${PROJECT_SOURCE_DIR}/ppu/libspe2/include/free_align.h ${PROJECT_SOURCE_DIR}/ppu/libspe2/include/libsync.h TYPE INCLUDE COMPONENT development)
     install(DIRECTORY ${PROJECT_SOURCE_DIR}/ppu/libspe2/inlined/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/softcell/libspe2 COMPONENT development)

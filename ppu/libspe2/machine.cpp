@@ -27,6 +27,7 @@ ls_sim::SpeOptions options_of(const Settings& settings, ls_sim::Findings& findin
   if (settings.turns) options.interleaving = ls_sim::Interleaving::kTurns;
   if (settings.checked) options.findings = &findings;
   options.trace = trace;
+  options.status_says_failure = false;  // a program's statuses and stops mean what it likes
   return options;
 }
 

@@ -181,6 +181,13 @@ TEST(RunVerb, RecordsATrace) {
   const CommandResult run = run_softcell("run --trace " + (folder / "t.json") + " -- " + kForgets);
   EXPECT_EQ(run.status, 0) << run.output;
   EXPECT_EQ(run_softcell("report " + (folder / "t.json") + " --out " + (folder / "t.html")).status, 0);
+  std::ifstream file(folder / "t.json");
+  const auto trace = nlohmann::json::parse(file);
+  for (const auto& event : trace["traceEvents"]) {
+    if (event.contains("cat") && event["cat"] == "job") {
+      EXPECT_FALSE(event["args"]["failed"]) << "a status is the program's own";
+    }
+  }
 }
 
 TEST(RunVerb, WritesATraceToStandardOutput) {

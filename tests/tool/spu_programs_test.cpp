@@ -273,6 +273,8 @@ TEST(SpuPrograms, OfTheHostAreTimedByTheirTransfers) {
         run_softcell(std::string("spu run --timing ") + SOFTCELL_BLOCKS + " --in in=" + (folder / "in.bin") +
                      " --arg @in 64 " + std::to_string(buffers) + " 0 --json " + (folder / "t.json"));
     EXPECT_EQ(run.status, 0) << run.output;
+    EXPECT_NE(run.output.find("The cycles are those of waits for transfers: "), std::string::npos)
+        << run.output;
     return parsed_file(folder / "t.json")["timing"]["spes"][0]["stalls"]["tag_wait"].get<std::uint64_t>();
   };
   const std::uint64_t one = waits(1);

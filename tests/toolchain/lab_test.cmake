@@ -94,6 +94,11 @@ step("a function of the library's name" ${gcc} -w ${lab}/own.c -o ${lab}/own)
 says(1 "ended with status 7" ${BIN}/softcell spu run ${lab}/own)
 says(1 "ended with status 7" ${BIN}/softcell spu run --checked ${lab}/own)
 
+# A standard stream that a program reopens is its own, and not that of the figures.
+file(WRITE ${lab}/reopens.c "#include <stdio.h>\nint main(void) { freopen(\"reopened.txt\", \"w\", stdout); puts(\"in a file\"); return 0; }\n")
+step("a program that reopens standard output" ${gcc} ${lab}/reopens.c -o ${lab}/reopens)
+says(0 "local store: text[^\n]*\nin a file\n$" sh -c "cd ${lab} && ${BIN}/softcell spu run reopens && cat reopened.txt")
+
 # A main in an archive, and none.
 file(WRITE ${lab}/main_of_archive.c "int main(void) { return 6; }\n")
 step("an object with a main" ${gcc} -c ${lab}/main_of_archive.c -o ${lab}/main_of_archive.o)
@@ -155,3 +160,11 @@ says(2 "is no name of a variable" ${BIN}/softcell-embedspu 1st ${lab}/whole ${la
 says(2 "is no ELF file" ${BIN}/softcell-embedspu name ${lab}/Makefile ${lab}/e.o)
 says(2 "cannot read" ${BIN}/softcell-embedspu name ${lab}/nothing ${lab}/e.o)
 says(2 "-m32: softcell's libspe2 has 64 bits" ${BIN}/softcell-embedspu -m32 name ${lab}/whole ${lab}/e.o)
+
+# A signal leaves no temporary files. The compiler waits for a header that nobody writes.
+file(WRITE ${lab}/waits.c "#include \"never_written.h\"\nint main(void) { return 0; }\n")
+foreach(signal INT TERM HUP)
+  step("nothing is left after SIG${signal}" sh -c "cd ${lab} && rm -rf temporary never_written.h && mkdir temporary && mkfifo never_written.h
+    TMPDIR=$PWD/temporary timeout -s ${signal} 0.5 ${gcc} waits.c -o waits
+    test $? = 124 -a ! -e waits && ls -A temporary && test -z \"$(ls -A temporary)\"")
+endforeach()

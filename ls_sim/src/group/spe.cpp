@@ -263,7 +263,8 @@ void Spe::count_job(const KernelImage& image, std::uint64_t number, SpeMonitor::
 }
 
 void Spe::account(const Run& run, const RunResult& result) {
-  const bool failed = !result.ended_normally() || result.status() != 0;
+  const bool succeeded = result.ended_normally() && result.status() == 0;
+  const bool failed = options_.status_says_failure ? !succeeded : result.fault.has_value();
   if (!run.resident) count_job(*run.image, run.number, run.begin, run_begin_, failed);
   if (run.resident && job_)
     count_job(image_under_way(), statistics_.jobs, job_->begin, job_->trace_begin, true);

@@ -1,4 +1,6 @@
 /* Mailboxes, signals and proxy DMA by plain loads and stores of the problem state. */
+#include <cbe_mfc.h>
+
 #include "run_in_thread.h"
 
 extern spe_program_handle_t echoes, collects_signals, sums_its_store, pauses;
@@ -63,8 +65,8 @@ static void transfer(void) {
     mfc->MFC_EAH = (unsigned int)((unsigned long long)(uintptr_t)words >> 32);
     mfc->MFC_EAL = (unsigned int)(uintptr_t)words;
     mfc->MFC_Size_Tag = (unsigned int)sizeof words << 16 | 7;
-    mfc->MFC_ClassID_CMD = 0x40;
-  } while (mfc->MFC_CMDStatus != 0);
+    mfc->MFC_ClassID_CMD = MFC_CMD_WORD(0, 0, MFC_GET_CMD);
+  } while (mfc->MFC_CMDStatus != MFC_PPU_DMA_CMD_ENQUEUE_SUCCESSFUL);
   mfc->Prxy_QueryMask = 1u << 7;
   while (mfc->Prxy_TagStatus != 1u << 7) {
   }

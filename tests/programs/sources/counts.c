@@ -1,6 +1,6 @@
 /* Counts in main memory, in rivalry with other SPEs: argp is the address of a lock, a counter that it protects, and a free one. */
 #include <libsync.h>
-#include <spu_mfcio.h>
+#include <cbe_mfc.h>
 #include <stdint.h>
 
 static uint32_t protected_count __attribute__((aligned(16)));

@@ -151,6 +151,9 @@ static void other_names(void) {
   CHECK(more != NULL && ((uintptr_t)more & 127) == 0 && more[0] == 0 && more[3] == 9);
   CHECK(realloc_align(more, 100, 5) == more && realloc_align(more, 300000, 7) == NULL);
   free_align(more);
+  char* const brief = alloca(300);
+  memset(brief, 7, 300);
+  CHECK(brief[299] == 7);
   CHECK(getenv("PATH") == NULL && strtold("2.5", NULL) == 2.5L);
   CHECK(setvbuf(stdout, NULL, _IONBF, 0) == 0);
   setbuf(stdout, NULL);

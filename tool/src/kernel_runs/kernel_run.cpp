@@ -1,9 +1,13 @@
 #include "kernel_run.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
+#include <array>
 #include <atomic>
 #include <chrono>
+#include <cstdio>
 #include <thread>
 
 #include "softcell/base/assert.h"
@@ -51,6 +55,28 @@ class Interrupter {
   std::jthread thread_;
 };
 
+/// A program for the host may give standard streams of this process other files (freopen). At the end of its run they are what they were.
+class KeptStandardStreams {
+ public:
+  KeptStandardStreams() {
+    for (std::size_t i = 0; i < kept_.size(); ++i)
+      kept_[i] = fcntl(static_cast<int>(i), F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
+  }
+  ~KeptStandardStreams() {
+    std::fflush(nullptr);
+    for (std::size_t i = 0; i < kept_.size(); ++i) {
+      if (kept_[i] < 0) continue;  // it was closed
+      dup2(kept_[i], static_cast<int>(i));
+      close(kept_[i]);
+    }
+  }
+  KeptStandardStreams(const KeptStandardStreams&) = delete;
+  KeptStandardStreams& operator=(const KeptStandardStreams&) = delete;
+
+ private:
+  std::array<int, 3> kept_{};
+};
+
 }  // namespace
 
 std::string describe_end(const SpeRun& spe) {
@@ -78,6 +104,7 @@ std::vector<std::string> KernelRun::failures(const ls_sim::KernelImage& image) c
 KernelRun run_kernel(dma::AddressSpace& memory, const ls_sim::KernelImage& image,
                      const KernelBuffers& buffers, const KernelTask& task, const RunSettings& settings) {
   SC_ASSERT(task.spes > 0 && task.spes <= dma::kSpeCount, "a task for {} SPEs", task.spes);
+  const KeptStandardStreams streams;
   ls_sim::Findings findings;
   ls_sim::SpeOptions options = spe_options(task, settings);
   if (image.checked) options.findings = &findings;

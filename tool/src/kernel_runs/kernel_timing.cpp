@@ -143,6 +143,11 @@ void print_timing(const ls_sim::KernelImage& image, const ls_sim::Timing& timing
     print_counts(counts, stalls);
     fmt::print("  {:.3f} us\n", microseconds(counts.cycles));
   }
+  if (image.machine == ls_sim::Machine::kHost)
+    fmt::print(
+        "The cycles are those of waits for transfers: {} is built for the host, and only a program for the "
+        "SPU has instructions that count.\n",
+        image.name);
   for (int spe = 0; spe < timing.spes(); ++spe) {
     print_functions(fmt::format("SPE {}", spe), timing.by_function(spe, image));
     print_details(timing, spe);

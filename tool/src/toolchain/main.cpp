@@ -128,8 +128,11 @@ int run_command(const std::string& command, Words words) {
 
 int main(int argc, char** argv) {
   const std::string command = std::filesystem::path(argv[0]).filename();
+  note_signals();
   try {
     return run_command(command, Words(argv + 1, argv + argc));
+  } catch (const Ended& ended) {
+    end_by(ended.signal);
   } catch (const Failed& failed) {
     return failed.status;
   } catch (const std::invalid_argument& error) {

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cerrno>
+#include <csignal>
 #include <cstdlib>
 #include <cstring>
 #include <stdexcept>
@@ -33,14 +34,35 @@ pid_t spawn(const Words& command, posix_spawn_file_actions_t& actions) {
   return child;
 }
 
+volatile std::sig_atomic_t noted = 0;
+
 int status_of(pid_t child) {
   int status = 0;
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+    if (noted != 0) kill(child, SIGTERM);
   }
+  if (noted != 0) throw Ended{noted};
   return WIFEXITED(status) ? WEXITSTATUS(status) : 1;
 }
 
 }  // namespace
+
+void note_signals() {
+  struct sigaction action {};
+  action.sa_handler = [](int signal) { noted = signal; };
+  sigemptyset(&action.sa_mask);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) {
+    struct sigaction present {};
+    sigaction(signal, nullptr, &present);
+    if (present.sa_handler != SIG_IGN) sigaction(signal, &action, nullptr);
+  }
+}
+
+void end_by(int signal) {
+  std::signal(signal, SIG_DFL);
+  std::raise(signal);
+  std::abort();
+}
 
 int run(const Words& command, bool quiet) {
   posix_spawn_file_actions_t actions;

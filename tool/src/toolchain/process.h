@@ -9,10 +9,23 @@ namespace softcell::toolchain {
 
 using Words = std::vector<std::string>;
 
+/// A signal wants this process to end.
+struct Ended {
+  int signal;
+};
+
+/// From here on Ctrl-C, SIGTERM and their like end the program that is run, and are thrown as Ended when it has ended, so that no temporary
+/// file is left. A signal that is ignored stays so.
+void note_signals();
+
+/// Ends this process as the signal would have done. @pre  note_signals() was called
+[[noreturn]] void end_by(int signal);
+
 /// Runs a program and waits for its end. It shares our standard input, output and error.
 /// @param quiet  drops its standard error.
 /// @return  its status; 1 if a signal has ended it.
 /// @throws std::runtime_error  it cannot be run; the message names it.
+/// @throws Ended
 int run(const Words& command, bool quiet = false);
 
 /// Like run(), but returns what the program prints on standard output, without the last line's end.

@@ -51,7 +51,7 @@ class SpeTrace final : public dma::MfcObserver {
 
   /// Records a run that has ended. Copies the declarations of an image when the image first occurs.
   /// @pre  begin <= end
-  /// @param failed  true if it ended by a fault or with another status than 0.
+  /// @param failed  true if it ended by a fault, or with another status than 0 (SpeOptions::status_says_failure).
   void on_job(const KernelImage& image, std::uint64_t job_number, TraceTime begin, TraceTime end,
               bool failed);
 

@@ -1,6 +1,9 @@
 #pragma once
 // Memory between the image and its stack, numbers from text, sorting, and how a program ends. [C17, 7.22]
 
+#ifndef __STRICT_ANSI__
+#include <alloca.h>
+#endif
 #include <stddef.h>
 #include <sys/cdefs.h>
 
