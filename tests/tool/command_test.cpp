@@ -1125,7 +1125,7 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"spu budget %s/cube.obj", 1,
                 "cube.obj is not an ELF file; a kernel is the file NAME.spu.elf"},
         Refusal{"spu timing skin --static", 1, "or --engine interpreter for softcell's own build"},
-        Refusal{"spu budget --checked job_loop", 1, "has no checked flavour"},
+        Refusal{"spu budget --checked job_loop", 1, "has no checked image"},
         Refusal{"report /dev/zero --out %s/r.html", 1, "/dev/zero: it is not a regular file"},
         Refusal{"demo 2d --headless --image %s/none.png", 1, "none.png"},
         Refusal{"demo 2d --headless --image /dev/zero", 1, "/dev/zero: it is not a regular file"},

@@ -216,7 +216,7 @@ class DemoVerbs final : public Verb {
                  "SPU has made; or reference, the PPU with Eigen")
         ->type_name("native|interpreter|reference");
     d.add_flag("--checked", options.checked,
-               "Run the instrumented flavour of the kernels; findings end with status 3");
+               "Run the checked images of the kernels; findings end with status 3");
     d.add_option("--record", options.record, "Record the events of each frame, for --replay")
         ->type_name("FILE");
     d.add_option(
