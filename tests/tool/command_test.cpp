@@ -220,6 +220,19 @@ TEST(Command, HelpOfAVerbIsWhatItsHelpOptionPrints) {
   }
 }
 
+TEST(Command, HelpNamesTheRangesOfNumbers) {
+  const std::string of_3d = run_softcell("demo 3d --help").output,
+                    of_2d = run_softcell("demo 2d --help").output;
+  const auto joined = [](const std::string& text) {
+    return std::regex_replace(text, std::regex("\\s+"), " ");
+  };
+  for (const char* range :
+       {"longest side, 2 to 256", "many cells, 0.125 to 100", "video, 1 to 60", "pictures 1 to 8 times"})
+    EXPECT_NE(joined(of_3d).find(range), std::string::npos) << of_3d;
+  EXPECT_NE(joined(of_2d).find("painted, 2 to 256"), std::string::npos) << of_2d;
+  EXPECT_NE(joined(run_softcell("spu run --help").output).find("0.001 to 86400"), std::string::npos);
+}
+
 TEST(Command, ListsItsScenes) {
   const CommandResult run = run_softcell("scenes");
   EXPECT_EQ(run.status, 0);
