@@ -5,6 +5,7 @@
 #   share/man/man1/, share/bash-completion/, share/zsh/, share/fish/   its manual page, completion [command]
 #   include/softcell/<library>/            public headers                                          [development]
 #   include/libspe2.h, lib/libspe2.so      target softcell::libspe2                                [development]
+#   include/softcell/libspe2/              headers of libsync's functions one by one               [development]
 #   include/softcell/psl1ght/, share/softcell/psl1ght/  target softcell::psl1ght; what its Makefiles include [development]
 #   bin/softcell-spu-*, softcell-embedspu, softcell-bin2s, lib/softcell/  the commands of a toolchain   [development]
 #   lib/libsoftcell_<library>.a            targets softcell::<library>                             [development]
@@ -75,7 +76,9 @@ macro(softcell_install_component component)
       ${PROJECT_SOURCE_DIR}/ppu/libspe2/include/cbea_map.h ${PROJECT_SOURCE_DIR}/ppu/libspe2/include/ppu_intrinsics.h
       ${PROJECT_SOURCE_DIR}/ppu/libspe2/include/libmisc.h ${PROJECT_SOURCE_DIR}/ppu/libspe2/include/malloc_align.h
       ${PROJECT_SOURCE_DIR}/ppu/libspe2/include/free_align.h ${PROJECT_SOURCE_DIR}/ppu/libspe2/include/libsync.h TYPE INCLUDE COMPONENT development)
-    softcell_install_pkg_config(libspe2 "the SPE Runtime Management Library" LIBS -Wl,-rpath,\${libdir} -lspe2)
+    install(DIRECTORY ${PROJECT_SOURCE_DIR}/ppu/libspe2/inlined/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/softcell/libspe2 COMPONENT development)
+    softcell_install_pkg_config(libspe2 "the SPE Runtime Management Library"
+      CFLAGS -I\${prefix}/${CMAKE_INSTALL_INCLUDEDIR}/softcell/libspe2 LIBS -Wl,-rpath,\${libdir} -lspe2)
   elseif("${component}" STREQUAL "render")
     softcell_install_libraries(render glad render)
     softcell_install_pkg_config(render "pictures of meshes, without a window"

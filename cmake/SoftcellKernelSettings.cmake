@@ -69,7 +69,8 @@ set(SOFTCELL_PROGRAM_FLAGS -ffunction-sections -fdata-sections -D__SPU__ -nostdi
   # There is no operating system in a local store, by which portable sources choose.
   -Ulinux -U__linux -U__linux__ -U__gnu_linux__ -Uunix -U__unix -U__unix__
   # There is one thread, whose variables are variables like any other. (The compiler would look for them in memory of the host's thread.)
-  -D__thread= -D_Thread_local=)
+  -D__thread= -D_Thread_local=
+  "-D__ea=_Pragma(\"GCC error \\\"there is no address space __ea here: move bytes of main storage by DMA, with mfc_get() and mfc_put()\\\"\")")
 # In C++ the word may stand alone in a function, where it means static.
 set(SOFTCELL_PROGRAM_CXX_FLAGS -Werror=return-type
   "-Dthread_local=_Pragma(\"GCC error \\\"one thread runs in a local store: leave out thread_local, or in a function write static\\\"\")")

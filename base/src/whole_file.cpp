@@ -4,8 +4,11 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <array>
 #include <atomic>
 #include <cerrno>
+#include <climits>
+#include <csignal>
 #include <cstring>
 #include <stdexcept>
 #include <string>
@@ -17,6 +20,23 @@ namespace softcell::base {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// The names of temporary files where a signal handler may read them: in memory that is never freed.
+struct NameForSignals {
+  enum State : int { kFree, kTaken, kRead };
+  std::atomic<int> state{kFree};
+  std::array<char, PATH_MAX> name;
+};
+constexpr std::size_t kNamesForSignals = 64;
+std::array<NameForSignals, kNamesForSignals> names_for_signals;
+static_assert(std::atomic<int>::is_always_lock_free);
+
+void remove_temporary_files_and_end(int signal) {
+  for (const NameForSignals& name : names_for_signals) {
+    if (name.state.load(std::memory_order_acquire) == NameForSignals::kRead) ::unlink(name.name.data());
+  }
+  ::raise(signal);  // handled by default again
+}
 
 /// Of the file's own name, which may be as long as names can be, it has the ending only: a program that is
 /// given the name may tell the format by it.
@@ -75,6 +95,7 @@ void WholeFile::open_temporary(const fs::file_status& replaced) {
   } while (descriptor < 0 && errno == EEXIST);
   if (descriptor < 0) fail(errno);
   temporary_ = name;
+  remember_temporary();
   file_ = ::fdopen(descriptor, "wb");
   if (file_ == nullptr) {
     const int error = errno;
@@ -112,17 +133,50 @@ void WholeFile::commit() {
   finish();
   if (!temporary_.empty() && std::rename(temporary_.c_str(), place_.c_str()) != 0) fail(errno);
   settled_ = true;
+  forget_temporary();
 }
 
 void WholeFile::discard() {
   if (std::exchange(settled_, true)) return;
   if (file_ != nullptr) std::fclose(std::exchange(file_, nullptr));
   if (!temporary_.empty()) std::remove(temporary_.c_str());
+  forget_temporary();
+}
+
+void WholeFile::remember_temporary() {
+  const std::string& path = temporary_.native();
+  if (path.size() >= PATH_MAX) return;
+  for (std::size_t i = 0; i < names_for_signals.size(); ++i) {
+    NameForSignals& name = names_for_signals[i];
+    int free = NameForSignals::kFree;
+    if (!name.state.compare_exchange_strong(free, NameForSignals::kTaken)) continue;
+    std::memcpy(name.name.data(), path.c_str(), path.size() + 1);
+    name.state.store(NameForSignals::kRead, std::memory_order_release);
+    name_for_signals_ = i;
+    return;
+  }
+}
+
+void WholeFile::forget_temporary() {
+  if (const std::size_t name = std::exchange(name_for_signals_, kNoName); name != kNoName)
+    names_for_signals[name].state.store(NameForSignals::kFree, std::memory_order_release);
 }
 
 void WholeFile::fail(int error) {
   discard();
   throw std::runtime_error("cannot write " + path_.string() + ": " + std::strerror(error));
+}
+
+void remove_temporary_files_at(std::initializer_list<int> signals) {
+  struct sigaction action {};
+  action.sa_handler = &remove_temporary_files_and_end;
+  action.sa_flags = static_cast<int>(SA_RESETHAND | SA_NODEFER);
+  sigemptyset(&action.sa_mask);
+  for (const int signal : signals) {
+    struct sigaction present {};
+    sigaction(signal, nullptr, &present);
+    if (present.sa_handler != SIG_IGN) sigaction(signal, &action, nullptr);
+  }
 }
 
 }  // namespace softcell::base

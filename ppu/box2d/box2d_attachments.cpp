@@ -154,6 +154,14 @@ void Box2dAttachments::move(AttachmentId id, const Vector2f& position, float ang
   wake(link);
 }
 
+void Box2dAttachments::shift(const Vector2f& by) {
+  for (const auto& link : links_) {
+    link->hold.frame.position += by;
+    link->hold.frame.end_position += by;
+    link->hold.goal += by;
+  }
+}
+
 std::optional<AttachmentState<2>> Box2dAttachments::state(AttachmentId id) const {
   if (const Link* const link = links_.find(id)) return link->rows.state();
   return std::nullopt;

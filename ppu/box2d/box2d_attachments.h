@@ -41,6 +41,8 @@ class Box2dAttachments {
   void remove(AttachmentId id);  ///< @throws std::invalid_argument  there is no attachment with that number.
   /// @throws std::invalid_argument  there is no attachment with that number, or it is not to the world.
   void move(AttachmentId id, const Eigen::Vector2f& position, float angle, float seconds);
+  /// The world's origin has moved: attachments to the world move with it. @param by  metres, added to all positions
+  void shift(const Eigen::Vector2f& by);
   std::optional<AttachmentState<2>> state(AttachmentId id) const;
   std::optional<AttachmentEnds<2>> ends(AttachmentId id) const;
   std::vector<EndedAttachment> take_ended();

@@ -70,6 +70,12 @@ void Box2dBody::begin_step() {
   place_particles();
 }
 
+void Box2dBody::shift(const Eigen::Vector2f& by) {
+  const bool was_changed_before = was_changed();
+  soft_.translate(by);
+  if (!was_changed_before) seen_revision_ = soft_.revision();
+}
+
 void Box2dBody::take_over_particles() {
   if (!was_changed() && !soft_.asleep()) gather_particles();
 }

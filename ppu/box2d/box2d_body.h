@@ -47,6 +47,8 @@ class Box2dBody {
 
   /// Called before the solver: takes what the body's user may have done to it, or to its particles in Box2D.
   void begin_step();
+  /// The world's origin has moved. That changes nothing for the body: it goes on sleeping. @param by  metres, added to all positions
+  virtual void shift(const Eigen::Vector2f& by);
   /// Called between steps: takes over particles that their user has moved or pushed in Box2D, as begin_step() does.
   void take_over_particles();
   /// Moves a particle without changing its velocity. @param particle  its number in the body  @param way  metres

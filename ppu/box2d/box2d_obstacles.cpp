@@ -209,6 +209,14 @@ void Box2dObstacles::forget_places() {
   for (auto& [body, known] : known_bodies_) known.place.reset(), known.motion.reset();
 }
 
+/// Box2D moves bodies and its tree, but not the boxes of fixtures (b2Fixture::GetAABB()) until a body moves.
+void Box2dObstacles::shift(b2World& world, const Vector2f& by) {
+  for (auto& [body, known] : known_bodies_)
+    if (known.place) known.place->shift({by.x(), by.y(), 0});
+  for (b2Body* body = world.GetBodyList(); body != nullptr; body = body->GetNext())
+    body->SetTransform(body->GetPosition(), body->GetAngle());
+}
+
 const MovedByPlace* Box2dObstacles::moved_by_place_of(const b2Body& body) const {
   const std::optional<MovedByPlace>& motion = known_bodies_.at(&body).motion;
   return motion ? &*motion : nullptr;

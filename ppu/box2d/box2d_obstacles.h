@@ -46,6 +46,8 @@ class Box2dObstacles {
   bool is_moved_by_place(const b2Body& body) const { return moved_by_place_of(body) != nullptr; }
   /// Forgets where bodies were: steps have passed in which nobody looked.
   void forget_places();
+  /// The world's origin has moved, as in FollowedPlace::shift().
+  void shift(b2World& world, const Eigen::Vector2f& by);
   /// Where a body is when the step begins: where it was before, if the program has moved it by its place since.
   b2Transform pose_of(const b2Body& body) const;
   /// The fixture of an obstacle.

@@ -207,14 +207,15 @@ struct Box2dSoftBodies::Impl {
   }
 
   /// Null: bodies touch with circles.
-  const SurfaceContacts2d::Model* whole_of(const std::shared_ptr<const SoftBodyModel<2>>& model) {
-    return surfaces ? &surfaces->whole_of(model) : nullptr;
+  std::shared_ptr<const SurfaceContacts2d::Model> whole_of(
+      const std::shared_ptr<const SoftBodyModel<2>>& model) {
+    return surfaces ? surfaces->whole_of(model) : nullptr;
   }
 
   /// May run on any thread. @param least_cells  as plan_pieces()  @param whole  whole_of() the model
   Pieces make_pieces(const std::shared_ptr<const SoftBodyModel<2>>& model,
                      std::span<const std::uint32_t> faces, std::uint32_t least_cells,
-                     const SurfaceContacts2d::Model* whole) {
+                     const std::shared_ptr<const SurfaceContacts2d::Model>& whole) {
     Pieces pieces{plan_pieces(model, faces, least_cells), {}};
     for (const BodyPiece<2>& piece : pieces.planned.stay) {
       solve.prepare(piece.body.shared_model());
@@ -257,7 +258,7 @@ struct Box2dSoftBodies::Impl {
     }
     if (surfaces) {
       surfaces->follow_pieces(body, *whole, that_touch);
-      surfaces->forget_pieces(bodies);
+      surfaces->forget_unused(bodies);
     } else {
       parting.add(pieces);
       if (!parting.empty()) filter.install();
@@ -334,7 +335,7 @@ void Box2dSoftBodies::remove(const SoftBody<2>& body) {
   forget_removed(body, impl_->broken);
   if (impl_->surfaces) impl_->surfaces->forget(**found);
   impl_->bodies.erase(found);
-  if (impl_->surfaces) impl_->surfaces->forget_pieces(impl_->bodies);
+  if (impl_->surfaces) impl_->surfaces->forget_unused(impl_->bodies);
 }
 
 std::vector<SoftBody<2>*> Box2dSoftBodies::cut(const SoftBody<2>& body, const Cut2d& where) {
@@ -421,6 +422,19 @@ void Box2dSoftBodies::end_step(float step) {
 
 void Box2dSoftBodies::begin_ahead(float step) {
   if (passes_time(step)) impl_->timed([&] { impl_->solve.begin(step); });
+}
+
+void Box2dSoftBodies::shift_origin(const Vector2f& new_origin) {
+  if (!new_origin.allFinite())
+    throw std::invalid_argument("Box2dSoftBodies: an origin at (" + base::shortest(new_origin.x()) + ", " +
+                                base::shortest(new_origin.y()) + ") m; expected are finite numbers");
+  SC_ASSERT(!impl_->world.IsLocked(), "the origin of {} bodies is moved within a step of Box2D",
+            impl_->bodies.size());
+  impl_->solve.drop();
+  impl_->world.ShiftOrigin(to_box2d(new_origin));
+  for (const auto& body : impl_->bodies) body->shift(-new_origin);
+  impl_->attachments.shift(-new_origin);
+  if (impl_->surfaces) impl_->surfaces->shift(-new_origin);
 }
 
 void Box2dSoftBodies::let_sleep(const std::optional<SleepSettings>& settings) {

@@ -110,6 +110,11 @@ bool CircleBody::has_lost_support() const {
   return false;
 }
 
+void CircleBody::shift(const Eigen::Vector2f& by) {
+  Box2dBody::shift(by);
+  for (Support& support : supports_) support.pose.p += to_box2d(by);
+}
+
 bool CircleBody::was_pushed() const {
   if (soft_.asleep()) return was_disturbed();
   const auto outer = soft_.model().outer();

@@ -28,6 +28,7 @@ class CircleBody final : public Box2dBody {
   void hand_over(float step) override;
   /// Takes over outer particles from Box2D; inner ones follow them.
   void end_step(float step) override;
+  void shift(const Eigen::Vector2f& by) override;
 
  private:
   /// A rigid body that a particle touched when the body fell asleep.

@@ -52,18 +52,21 @@ void SurfaceContacts2d::adopt(std::unique_ptr<Model> piece) {
   models_.try_emplace(model, std::move(piece));
 }
 
-const SurfaceContacts2d::Model& SurfaceContacts2d::model_of(
+const std::shared_ptr<const SurfaceContacts2d::Model>& SurfaceContacts2d::model_of(
     const std::shared_ptr<const SoftBodyModel<2>>& model) {
-  std::unique_ptr<Model>& known = models_[model.get()];  // keeps its address, even when others are added
-  if (known) return *known;
-  known = model->is_piece() ? make_piece(model, whole_of(model))
-                            : std::make_unique<Model>(model, touching_skin(*model));
-  return *known;
+  std::shared_ptr<const Model>& known =
+      models_[model.get()];  // keeps its address, even when others are added
+  if (known) return known;
+  if (model->is_piece())
+    known = make_piece(model, *whole_of(model));
+  else
+    known = std::make_shared<Model>(model, touching_skin(*model));
+  return known;
 }
 
 void SurfaceContacts2d::draw(const std::shared_ptr<const SoftBodyModel<2>>& model, const Skin2d& skin) {
-  std::unique_ptr<Model>& known = models_[model.get()];
-  if (!known) known = std::make_unique<Model>(model, skin);
+  std::shared_ptr<const Model>& known = models_[model.get()];
+  if (!known) known = std::make_shared<Model>(model, skin);
 }
 
 void SurfaceContacts2d::lift(const Box2dBody& body, Kept& kept, float step) {
@@ -98,7 +101,7 @@ void SurfaceContacts2d::begin(Bodies bodies, const Box2dAttachments& attachments
     Kept& kept = kept_[&body];
     if (kept.model == nullptr) kept.number = next_number_++;
     if (soft.position(0) != kept.place_of_sides) kept.sides = {};  // the program has moved the body
-    kept.model = &model_of(soft.shared_model());
+    kept.model = model_of(soft.shared_model()).get();
     lift(body, kept, step);
     softs_.push_back(&soft);
     BodyInStage& in_stage = in_stage_[i];
@@ -178,18 +181,17 @@ void SurfaceContacts2d::rise(Kept& kept) {
 
 /// Wakes bodies before anything is solved: a sleeping body would stop everything that hits it like a wall, and absorb its momentum.
 void SurfaceContacts2d::wake_those_in_the_way(Bodies bodies) {
+  moving_.clear();
+  for (std::uint32_t i = 0; i < bodies.size(); ++i)
+    if (!bodies[i]->soft().asleep() && bodies[i]->moves()) moving_.push_back(i);
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     BodyInStage& sleeper = in_stage_[i];
-    if (bodies[i]->soft().asleep()) {
-      for (std::size_t other = 0; other < bodies.size(); ++other) {
-        const bool hits = !bodies[other]->soft().asleep() && bodies[other]->moves() &&
-                          overlap(sleeper.box, in_stage_[other].box) &&
-                          sleeper.filter.lets(in_stage_[other].filter);
-        if (!hits) continue;
-        bodies[i]->wake();
-        rise(kept_.at(bodies[i].get()));
-        break;
-      }
+    const auto hits = [&](std::uint32_t other) {
+      return overlap(sleeper.box, in_stage_[other].box) && sleeper.filter.lets(in_stage_[other].filter);
+    };
+    if (bodies[i]->soft().asleep() && std::ranges::any_of(moving_, hits)) {
+      bodies[i]->wake();
+      rise(kept_.at(bodies[i].get()));
     }
     sleeper.asleep = bodies[i]->soft().asleep();
     if (sleeper.asleep) sleeper.obstacles.clear();
@@ -197,6 +199,8 @@ void SurfaceContacts2d::wake_those_in_the_way(Bodies bodies) {
 }
 
 void SurfaceContacts2d::step(Bodies bodies, Box2dAttachments& attachments, float step) {
+  if (has_removed_) forget_unused(bodies);  // a solver lets go of a model in its next step
+  has_removed_ = false;
   if (bodies.empty()) return obstacles_.forget_places();
   SC_ASSERT(step > 0 && !world_.IsLocked(), "contacts of {} s within a step of Box2D, or of none", step);
   obstacles_.begin(world_, step, largest_cell(bodies));
@@ -377,13 +381,28 @@ void SurfaceContacts2d::tell_those_on(const Box2dBody& body) {
     if (std::ranges::find(kept.lies_on, &body) != kept.lies_on.end()) kept.lost_support = true;
 }
 
-void SurfaceContacts2d::forget_pieces(Bodies bodies) {
-  std::erase_if(models_, [&](const auto& known) {
+void SurfaceContacts2d::shift(const Vector2f& by) {
+  obstacles_.shift(world_, by);
+  for (auto& [body, kept] : kept_) {
+    kept.place_of_sides = body->soft().position(0);
+    for (std::vector<Support>* const known : {&kept.supports, &kept.seen})
+      for (Support& support : *known) support.pose.p += to_box2d(by);
+  }
+}
+
+void SurfaceContacts2d::forget_unused(Bodies bodies) {
+  const auto is_unused = [&](const auto& known) {
+    const bool may_come_back = !known.first->is_piece() && known.second->model.use_count() > 1;
     const auto is_of = [&](const auto& body) { return body->soft().shared_model().get() == known.first; };
-    if (!known.first->is_piece() || std::ranges::any_of(bodies, is_of)) return false;
+    const auto was_of = [&](const auto& kept) { return kept.second.model == known.second.get(); };
+    if (may_come_back || std::ranges::any_of(bodies, is_of) || std::ranges::any_of(kept_, was_of))
+      return false;
     if (worker_) worker_->forget(known.second->contact);
     return true;
-  });
+  };
+  // The last piece that goes lets go of the whole.
+  while (std::erase_if(models_, is_unused) > 0) continue;
+  has_removed_ = true;
 }
 
 }  // namespace softcell::ppu

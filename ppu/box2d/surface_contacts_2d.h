@@ -48,8 +48,8 @@ class SurfaceContacts2d {
   /// Sets how bodies of a model are drawn, if not by make_skin_2d(). Has no effect once a body of the model has been in a step.
   void draw(const std::shared_ptr<const SoftBodyModel<2>>& model, const Skin2d& skin);
 
-  /// The model from which pieces of its bodies are made. The reference stays valid.
-  const Model& whole_of(const std::shared_ptr<const SoftBodyModel<2>>& model) {
+  /// The model from which pieces of its bodies are made.
+  const std::shared_ptr<const Model>& whole_of(const std::shared_ptr<const SoftBodyModel<2>>& model) {
     return model_of(model->is_piece() ? model->whole() : model);
   }
   /// May run on any thread. @param whole  whole_of() the body that breaks
@@ -71,7 +71,7 @@ class SurfaceContacts2d {
   std::vector<ContactEvent2d> poll_events() { return log_.poll(); }
 
   /// How a body of the model is drawn: this outline touches.
-  const Skin2d& skin(const std::shared_ptr<const SoftBodyModel<2>>& model) { return model_of(model).skin; }
+  const Skin2d& skin(const std::shared_ptr<const SoftBodyModel<2>>& model) { return model_of(model)->skin; }
 
   /// Records that a body has fallen asleep, with what it touches.
   void let_lie(const Box2dBody& body);
@@ -86,8 +86,11 @@ class SurfaceContacts2d {
   };
   /// Gives pieces the sides of the body that broke into them, which has become the first of them. @param whole  the model that it had
   void follow_pieces(const Box2dBody& body, const SoftBodyModel<2>& whole, std::span<const Piece> pieces);
-  /// Frees what is kept of pieces if none of these bodies has their model any longer. @pre between steps
-  void forget_pieces(Bodies bodies);
+  /// Follows bodies and the world to another origin. @param by  metres, which all positions have just been moved by
+  void shift(const Eigen::Vector2f& by);
+  /// Frees what is kept of a model that none of these bodies has any longer, if it is a piece's or nobody else holds the model.
+  /// @pre between steps
+  void forget_unused(Bodies bodies);
 
  private:
   /// A rigid body as it was when a soft one fell asleep on it, or when a sleeper near it first saw it.
@@ -110,7 +113,7 @@ class SurfaceContacts2d {
     bool lies() const { return lost_support || !supports.empty() || !lies_on.empty(); }
   };
 
-  const Model& model_of(const std::shared_ptr<const SoftBodyModel<2>>& model);
+  const std::shared_ptr<const Model>& model_of(const std::shared_ptr<const SoftBodyModel<2>>& model);
   void lift(const Box2dBody& body, Kept& kept, float step);
   void begin(Bodies bodies, const Box2dAttachments& attachments, float step);
   void begin_attachments(Bodies bodies, Box2dAttachments& attachments, float step);
@@ -128,7 +131,8 @@ class SurfaceContacts2d {
 
   b2World& world_;
   std::shared_ptr<ContactWorker> worker_;
-  std::unordered_map<const SoftBodyModel<2>*, std::unique_ptr<Model>> models_;
+  std::unordered_map<const SoftBodyModel<2>*, std::shared_ptr<const Model>> models_;
+  bool has_removed_ = false;  // bodies, since the last step
   std::unordered_map<const Box2dBody*, Kept> kept_;
   Box2dObstacles obstacles_{Box2dObstacles::Fixtures::kSolid};
   Box2dLinks links_;
@@ -136,6 +140,7 @@ class SurfaceContacts2d {
   std::vector<std::uint32_t> attached_rigids_;
   ContactStage stage_;
   std::vector<BodyInStage> in_stage_;
+  std::vector<std::uint32_t> moving_;      // bodies that wake those in their way
   std::vector<const SoftBody<2>*> softs_;  // of the last step
   std::vector<PressingContact> pressing_;  // of the last step
   SoftTouches touches_;

@@ -182,14 +182,14 @@ bool is_under_way(const btCollisionObject& object) { return may_move(object) && 
 
 /// The velocity without contacts: Bullet adds forces, gravity among them, later in its step.
 Vector3f velocity_in(float step, const btRigidBody& body) {
-  const Vector3f velocity = to_eigen(body.getLinearVelocity());
+  const Vector3f velocity = to_eigen(velocity_of(body));
   if (body.isStaticOrKinematicObject()) return velocity;
   return velocity + step * body.getInvMass() * to_eigen(body.getTotalForce());
 }
 
 /// The spin without contacts: Bullet adds torques later in its step.
 Vector3f spin_in(float step, const btRigidBody& body) {
-  const Vector3f spin = to_eigen(body.getAngularVelocity());
+  const Vector3f spin = to_eigen(spin_of(body));
   if (body.isStaticOrKinematicObject()) return spin;
   return spin + step * (to_eigen(body.getInvInertiaTensorWorld()) * to_eigen(body.getTotalTorque()));
 }

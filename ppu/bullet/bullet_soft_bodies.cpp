@@ -109,7 +109,7 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
     return body.contact().model() != body.soft().shared_model();
   }
   void follow_model(SurfaceBody& body) {
-    if (is_of_other_model(body)) body.set_contact(surfaces->contact_model(body.soft().shared_model()));
+    if (is_of_other_model(body)) body.set_contact(*surfaces->contact_model(body.soft().shared_model()));
   }
   /// An assignment may have given the body another model. Its attachments refer to particles that it does not have, so they are removed.
   void take_other_model(SurfaceBody& body) {
@@ -126,10 +126,10 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
   }
 
   /// Null: contact models of the body's pieces are not made ahead.
-  const ContactModel* contact_of_whole(const CoupledBody& body) {
+  std::shared_ptr<const ContactModel> contact_of_whole(const CoupledBody& body) {
     const std::shared_ptr<const SoftBodyModel<3>>& model = body.soft().shared_model();
     if (!surfaces || !body.can_be_touched() || model->mesh().triangles.empty()) return nullptr;
-    return &surfaces->contact_model(model->is_piece() ? model->whole() : model);
+    return surfaces->contact_model(model->is_piece() ? model->whole() : model);
   }
 
   /// @param substeps  from now until the pieces appear
@@ -149,8 +149,8 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
   /// May run on any thread.
   PreparedPieces make_pieces(const std::shared_ptr<const SoftBodyModel<3>>& model,
                              std::span<const std::uint32_t> faces, std::uint32_t least_cells,
-                             const ContactModel* whole) {
-    return prepare_pieces(model, faces, least_cells, whole,
+                             const std::shared_ptr<const ContactModel>& whole) {
+    return prepare_pieces(model, faces, least_cells, whole.get(),
                           [this](const auto& of_piece) { solve.prepare(of_piece); });
   }
 
@@ -208,7 +208,7 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
       follow_sides(before, with_attachments);
       follow_model(*with_attachments.front().body);
       surfaces->attachments().follow_pieces(*with_attachments.front().body, with_attachments, made.vanished);
-      surfaces->forget_pieces(with_surfaces);
+      surfaces->forget_unused(with_surfaces);
     }
     broken.push_back({&body.soft(), others, faces, made.vanished.size(), std::move(particles_before)});
     if (substeps_until_pieces(before.positions().size()) > 0) workshop->dispose(std::move(before));
@@ -220,7 +220,7 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
     if (!soft.settings().contacts) {
       body = std::make_unique<FreeBody>(world, std::move(soft));
     } else if (surfaces) {
-      const ContactModel& contact = surfaces->contact_model(soft.shared_model());
+      const ContactModel& contact = *surfaces->contact_model(soft.shared_model());
       auto surface = std::make_unique<SurfaceBody>(world, std::move(soft), contact, next_number++);
       with_surfaces.push_back(surface.get());
       body = std::move(surface);
@@ -351,7 +351,7 @@ void BulletSoftBodies::remove(const SoftBody<3>& body) {
   }
   forget_removed(body, impl_->broken);
   impl_->bodies.erase(found);
-  if (impl_->surfaces) impl_->surfaces->forget_pieces(impl_->with_surfaces);
+  if (impl_->surfaces) impl_->surfaces->forget_unused(impl_->with_surfaces);
 }
 
 std::vector<SoftBody<3>*> BulletSoftBodies::cut(const SoftBody<3>& body, const Cut& where) {

@@ -27,8 +27,7 @@ bool is_moved_by_bullet(const btRigidBody& rigid) { return !rigid.isStaticOrKine
 
 /// Also for kinematic bodies.
 bool is_slow(const btRigidBody& rigid, float speed) {
-  return rigid.getLinearVelocity().length2() < speed * speed &&
-         rigid.getAngularVelocity().length2() < speed * speed;
+  return velocity_of(rigid).length2() < speed * speed && spin_of(rigid).length2() < speed * speed;
 }
 
 template <typename T>

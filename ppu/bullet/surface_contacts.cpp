@@ -20,21 +20,21 @@ bool is_awake(const btCollisionObject& object) {
 bool moves(const btCollisionObject& object) {
   constexpr float kMoves = 0.05f;  // m/s and rad/s
   const btRigidBody* const body = btRigidBody::upcast(&object);
-  return body && may_move(*body) && body->isActive() &&
-         (body->getLinearVelocity().length2() > kMoves * kMoves ||
-          body->getAngularVelocity().length2() > kMoves * kMoves);
+  return body && body->isActive() &&
+         (velocity_of(*body).length2() > kMoves * kMoves || spin_of(*body).length2() > kMoves * kMoves);
 }
 
 }  // namespace
 
-const ContactModel& SurfaceContacts::contact_model(const std::shared_ptr<const SoftBodyModel<3>>& model) {
-  std::unique_ptr<ContactModel>& known = models_[model.get()];
-  if (known) return *known;
+const std::shared_ptr<const ContactModel>& SurfaceContacts::contact_model(
+    const std::shared_ptr<const SoftBodyModel<3>>& model) {
+  std::shared_ptr<const ContactModel>& known = models_[model.get()];
+  if (known) return known;
   // Without a mesh the surface is the lattice's own boundary, which is quickly measured.
   known = model->is_piece() && !model->mesh().triangles.empty()
-              ? std::make_unique<ContactModel>(model, contact_model(model->whole()))
-              : std::make_unique<ContactModel>(model);
-  return *known;
+              ? std::make_shared<ContactModel>(model, *contact_model(model->whole()))
+              : std::make_shared<ContactModel>(model);
+  return known;
 }
 
 void SurfaceContacts::adopt(std::unique_ptr<ContactModel> contact) {
@@ -43,14 +43,18 @@ void SurfaceContacts::adopt(std::unique_ptr<ContactModel> contact) {
   models_.try_emplace(model, std::move(contact));
 }
 
-void SurfaceContacts::forget_pieces(std::span<SurfaceBody* const> bodies) {
-  std::erase_if(models_, [&](const auto& known) {
+void SurfaceContacts::forget_unused(std::span<SurfaceBody* const> bodies) {
+  const auto is_unused = [&](const auto& known) {
     const ContactModel& contact = *known.second;
+    const bool may_come_back = !known.first->is_piece() && contact.model().use_count() > 1;
     const auto is_of = [&](const SurfaceBody* body) { return &body->contact() == &contact; };
-    if (!known.first->is_piece() || std::ranges::any_of(bodies, is_of)) return false;
+    if (may_come_back || std::ranges::any_of(bodies, is_of)) return false;
     if (worker_) worker_->forget(contact);
     return true;
-  });
+  };
+  // The last piece that goes lets go of the whole.
+  while (std::erase_if(models_, is_unused) > 0) continue;
+  has_removed_ = true;
 }
 
 template <typename Is>
@@ -100,6 +104,8 @@ void SurfaceContacts::see_what_is_near(SurfaceBody& sleeper, const BodyInStage& 
 }
 
 void SurfaceContacts::step(std::span<SurfaceBody* const> bodies, float step) {
+  if (has_removed_) forget_unused(bodies);  // a solver lets go of a model in its next step
+  has_removed_ = false;
   obstacles_.begin(world_, step);
   if (!attachments_.empty()) attachments_.begin();
   in_stage_.resize(bodies.size());

@@ -30,13 +30,14 @@ class SurfaceContacts {
     stage_.attachments = &in_step_;
   }
 
-  /// The data that all bodies of a model share, made at the first call. Valid as long as this object; for a piece of a broken body until
-  /// forget_pieces().
-  const ContactModel& contact_model(const std::shared_ptr<const SoftBodyModel<3>>& model);
+  /// The data that all bodies of a model share, made at the first call and kept until forget_unused() finds no use of it.
+  const std::shared_ptr<const ContactModel>& contact_model(
+      const std::shared_ptr<const SoftBodyModel<3>>& model);
   /// Keeps a model that was made elsewhere, as if contact_model() had made it.
   void adopt(std::unique_ptr<ContactModel> contact);
-  /// Frees what is kept of pieces if none of these bodies has their model any longer. @pre between substeps
-  void forget_pieces(std::span<SurfaceBody* const> bodies);
+  /// Frees what is kept of a model that none of these bodies has any longer, if it is a piece's or nobody else holds the model.
+  /// @pre between substeps
+  void forget_unused(std::span<SurfaceBody* const> bodies);
 
   /// Finds and solves the contacts of the substep that begins, moves all particles of bodies that are awake, and gives rigid bodies their
   /// impulses. Wakes bodies that are touched.
@@ -76,7 +77,8 @@ class SurfaceContacts {
 
   btDiscreteDynamicsWorld& world_;
   std::shared_ptr<ContactWorker> worker_;
-  std::map<const SoftBodyModel<3>*, std::unique_ptr<ContactModel>> models_;
+  std::map<const SoftBodyModel<3>*, std::shared_ptr<const ContactModel>> models_;
+  bool has_removed_ = false;  // bodies, since the last substep
   BulletObstacles obstacles_{BulletObstacles::Objects::kSolid};
   BulletLinks links_;
   SurfaceAttachments attachments_{world_};

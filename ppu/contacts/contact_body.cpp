@@ -21,13 +21,18 @@ std::vector<std::pair<std::uint32_t, Eigen::Vector3f>> homes_of_particles(const 
   return homes;
 }
 
+/// Does not count as a holder of the model.
+std::shared_ptr<const Lattice<3>> part_of(const SoftBodyModel<3>& model) {
+  return {std::shared_ptr<const void>(), &model.lattice()};
+}
+
 }  // namespace
 
 ContactModel::ContactModel(std::shared_ptr<const SoftBodyModel<3>> shared)
     : surface((SC_ASSERT(shared != nullptr, "contacts of a body without a model"), shared->mesh()),
               shared->lattice()),
       model_(std::move(shared)),
-      lattice_(model_, &model_->lattice()),
+      lattice_(part_of(*model_)),
       masses_(model_->masses()),
       own_count_(lattice_->cells.size()) {
   weigh();
@@ -38,7 +43,7 @@ ContactModel::ContactModel(std::shared_ptr<const SoftBodyModel<3>> shared)
 ContactModel::ContactModel(std::shared_ptr<const SoftBodyModel<3>> piece, const ContactModel& whole)
     : surface(whole.surface, piece->lattice(), piece->mesh(), piece->cracks()),
       model_(std::move(piece)),
-      lattice_(model_, &model_->lattice()),
+      lattice_(part_of(*model_)),
       masses_(model_->masses()),
       own_count_(lattice_->cells.size()) {
   SC_ASSERT(model_->whole() == whole.model(), "a piece of {} particles of another body of {}",

@@ -29,6 +29,14 @@ bool switch_of(const char* variable) {
   return false;
 }
 
+/// The name of a file, with the number of the process in place of %p.
+std::string file_of(const char* variable) {
+  std::string name(value_of(variable));
+  if (const auto at = name.find(kProcess); at != std::string::npos)
+    name.replace(at, kProcess.size(), std::to_string(getpid()));
+  return name;
+}
+
 std::chrono::milliseconds milliseconds_of(const char* variable) {
   const std::string_view value = value_of(variable);
   std::uint32_t number = 0;
@@ -52,10 +60,8 @@ Settings settings_from_environment() {
   settings.turns = switch_of("SOFTCELL_TURNS");
   settings.checked = switch_of("SOFTCELL_CHECKED");
   settings.deadline = milliseconds_of("SOFTCELL_DEADLINE_MS");
-  settings.trace_file = value_of("SOFTCELL_TRACE");
-  settings.report_file = value_of("SOFTCELL_REPORT");
-  if (const auto at = settings.report_file.find(kProcess); at != std::string::npos)
-    settings.report_file.replace(at, kProcess.size(), std::to_string(getpid()));
+  settings.trace_file = file_of("SOFTCELL_TRACE");
+  settings.report_file = file_of("SOFTCELL_REPORT");
   return settings;
 }
 

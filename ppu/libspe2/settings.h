@@ -16,7 +16,7 @@ struct Settings {
   bool turns = false;      ///< SOFTCELL_TURNS: 0 or 1; SPEs run one at a time, drawn from the seed
   bool checked = false;    ///< SOFTCELL_CHECKED: 0 or 1
   std::chrono::milliseconds deadline{0};  ///< SOFTCELL_DEADLINE_MS: of one run; 0: none
-  std::string trace_file;                 ///< SOFTCELL_TRACE
+  std::string trace_file;                 ///< SOFTCELL_TRACE, %p replaced
   std::string report_file;                ///< SOFTCELL_REPORT, %p replaced: what the run has done, as JSON
 };
 

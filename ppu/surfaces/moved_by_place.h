@@ -38,6 +38,8 @@ class FollowedPlace {
   bool stands(const Pose& now) const { return left_ == 0 && now == seen_; }
   /// Counts a substep in which it stands still.
   void stand() { ++since_; }
+  /// The world's origin has moved, and with it all that lies in the world: that is no motion. @param by  metres, added to all positions
+  void shift(const Eigen::Vector3f& by) { seen_.position += by, shown_.position += by; }
   /// The motion of this substep. None if the body has been put elsewhere: farther than half of what it measures, than 100 m/s take it, or
   /// turned by more than 60 degrees.
   /// @param now   where the program has put it

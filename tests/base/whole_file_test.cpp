@@ -3,9 +3,12 @@
 #include "softcell/base/whole_file.h"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <optional>
@@ -225,6 +228,43 @@ TEST_F(WholeFileTest, RefusesWhatIsNoFile) {
   fs::create_symlink("round", folder_ / "round");
   EXPECT_NE(refusal(folder_ / "round").find("Too many levels of symbolic links"), std::string::npos);
   EXPECT_EQ(names(), std::set<std::string>{"round"});
+}
+
+/// Opens three files, commits one, discards another, and raises the signal. @return  how the process ended
+int end_while_files_are_open(const fs::path& folder, int signal, bool is_ignored) {
+  const pid_t child = fork();
+  if (child == 0) {
+    const rlimit no_core{};
+    setrlimit(RLIMIT_CORE, &no_core);
+    std::signal(signal, is_ignored ? SIG_IGN : SIG_DFL);
+    remove_temporary_files_at({SIGQUIT, SIGPIPE});
+    WholeFile open(folder / "open"), committed(folder / "committed");
+    { const WholeFile discarded(folder / "discarded"); }
+    open.write("half of");
+    committed.write("all");
+    committed.commit();
+    const WholeFile another(folder / "another");
+    std::raise(signal);
+    _exit(7);
+  }
+  int status = 0;
+  EXPECT_EQ(waitpid(child, &status, 0), child);
+  return WIFSIGNALED(status) ? WTERMSIG(status) : -WEXITSTATUS(status);
+}
+
+TEST_F(WholeFileTest, LeavesNothingHiddenWhenASignalEndsTheProcess) {
+  for (const int signal : {SIGQUIT, SIGPIPE}) {
+    EXPECT_EQ(end_while_files_are_open(folder_, signal, false), signal);
+    EXPECT_EQ(names(), std::set<std::string>{"committed"});
+  }
+  EXPECT_EQ(end_while_files_are_open(folder_, SIGPIPE, true), -7) << "a signal that is ignored stays so";
+}
+
+TEST_F(WholeFileTest, MayBeMoreThanSignalsKnow) {
+  WholeFiles files;
+  for (int i = 0; i < 100; ++i) files.open(folder_ / std::to_string(i)).write("x");
+  files.commit();
+  EXPECT_EQ(names().size(), 100u);
 }
 
 }  // namespace

@@ -13,10 +13,10 @@
 namespace softcell::demos {
 namespace {
 
-/// What a simulation of the scene says; empty: it begins.
+/// What reading or a simulation of the scene says; empty: it begins.
 std::string refusal(const std::string& text, const SimulationOptions& options = {}) {
-  const auto scene = parse_scene(text, "s.toml");
   try {
+    const auto scene = parse_scene(text, "s.toml");
     if (const auto* const flat = std::get_if<Scene2d>(&scene))
       Simulation2d simulation(*flat, options);
     else
@@ -62,6 +62,18 @@ TEST(RefusedScene, ABodyThatCannotBreakAsItsContactsAreSpheresIsNamed) {
                 .find("s.toml:5:1: cut 1: the soft body to be cut touches with spheres"),
             0u)
       << refusal(kCube + cut, {.contacts = ppu::ContactMethod::kSpheres});
+}
+
+TEST(RefusedScene, ACutThatIsNeitherAPlaneNorAStrokeIsNamed) {
+  const auto refused = [](const std::string& fields) {
+    return refusal(kCube + std::string("[[cut]]\nbody = \"cube\"\ntime = 9\npoint = [0, 0, 0]\n") + fields);
+  };
+  EXPECT_EQ(refused(""), "s.toml:5:1: cut 1 needs either the field 'normal' or the fields 'edge' and 'way'");
+  EXPECT_EQ(refused("edge = [1, 0, 0]\n"), "s.toml:5:1: cut 1 has the field 'edge', so it needs 'way', too");
+  EXPECT_EQ(refused("way = [1, 0, 0]\n"), "s.toml:5:1: cut 1 has the field 'way', so it needs 'edge', too");
+  EXPECT_EQ(refused("normal = [1, 0, 0]\nway = [1, 0, 0]\n"),
+            "s.toml:10:1: cut 1 has the field 'normal', so it may not have 'way'");
+  EXPECT_EQ(refused("normal = [0, 0, 0]\n"), "s.toml:9:1: normal of cut 1 must not be 0");
 }
 
 }  // namespace

@@ -312,6 +312,66 @@ TEST_F(HostCallsTest, StreamsStayInTheFolder) {
   std::filesystem::remove_all(root);
 }
 
+TEST_F(HostCallsTest, AStreamIsReopenedInTheFolder) {
+  const auto root = std::filesystem::path(testing::TempDir()) / "softcell_host_reopened";
+  std::filesystem::remove_all(root);
+  std::filesystem::create_directories(root / "in");
+  calls_.folder = root / "in";
+  const auto reopen = [&](const std::string& path, const std::string& mode, std::uint32_t stream) {
+    set_argument(0, text(path));
+    set_argument(1, text(mode));
+    set_argument(2, stream);
+    return serve(kC99Call, 14);
+  };
+  EXPECT_EQ(reopen("out", "w", kStandardOutput), static_cast<std::int32_t>(kStandardOutput));
+  set_argument(0, text("line"));
+  serve(kC99Call, 25);
+  EXPECT_EQ(reopen("../stolen", "w", kStandardError), 0);
+  EXPECT_NE(error(), 0);
+  EXPECT_EQ(reopen("out", "r", 77), 0);
+  EXPECT_EQ(error(), EBADF);
+  set_argument(0, kStandardOutput);
+  serve(kC99Call, 5);  // fflush
+  EXPECT_EQ(std::filesystem::file_size(root / "in" / "out"), 5u);
+  EXPECT_EQ(printed_, "");
+  EXPECT_FALSE(std::filesystem::exists(root / "stolen"));
+  std::filesystem::remove_all(root);
+}
+
+TEST_F(HostCallsTest, TellsWhatIsKnownOfFilesInTheFolder) {
+  const auto root = std::filesystem::path(testing::TempDir()) / "softcell_host_known";
+  std::filesystem::remove_all(root);
+  std::filesystem::create_directories(root / "in");
+  std::ofstream(root / "in" / "five") << "12345";
+  std::filesystem::create_symlink("../../secret", root / "in" / "link");
+  calls_.folder = root / "in";
+  const auto status_of = [&](const std::string& path, std::uint32_t function) {
+    set_argument(0, text(path));
+    set_argument(1, kBuffer);
+    return serve(kPosixCall, function);
+  };
+  constexpr std::uint32_t kStatus = 23, kLinkStatus = 10, kMode = kBuffer + 8, kSize = kBuffer + 28;
+  EXPECT_EQ(status_of("five", kStatus), 0);
+  EXPECT_EQ(memory_.word(kMode) & 0170000, 0100000u);
+  EXPECT_EQ(memory_.word(kSize), 5u);
+  EXPECT_EQ(status_of(".", kStatus), 0);
+  EXPECT_EQ(memory_.word(kMode) & 0170000, 0040000u);
+  EXPECT_EQ(status_of("link", kStatus), -1);
+  EXPECT_EQ(status_of("link", kLinkStatus), 0);
+  EXPECT_EQ(memory_.word(kMode) & 0170000, 0120000u);
+  EXPECT_EQ(status_of("../in", kStatus), -1);
+  const std::int32_t file = open("five", 0);
+  set_argument(0, static_cast<std::uint32_t>(file));
+  set_argument(1, kBuffer);
+  memory_.set_word(kSize, 0);
+  EXPECT_EQ(serve(kPosixCall, 4), 0);
+  EXPECT_EQ(memory_.word(kSize), 5u);
+  set_argument(0, 99);
+  EXPECT_EQ(serve(kPosixCall, 4), -1);
+  EXPECT_EQ(error(), EBADF);
+  std::filesystem::remove_all(root);
+}
+
 /// puts() of a text in the program, and an end with the status 3.
 std::vector<std::uint32_t> calling_puts() {
   return {stop_with(kC99Call),

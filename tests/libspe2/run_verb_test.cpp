@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string>
 
 #include "softcell/base/sanitizers.h"
@@ -192,13 +193,45 @@ TEST(RunVerb, WritesATraceToStandardOutput) {
   EXPECT_EQ(run_softcell("report " + (folder / "t.json") + " --out " + (folder / "t.html")).status, 0);
 }
 
-TEST(RunVerb, SaysWhoseTraceItIsIfThereAreSeveralProcesses) {
+TEST(RunVerb, GivesEachOfSeveralProcessesATraceOfItsOwn) {
   const ScratchFolder folder;
-  const CommandResult run =
-      run_softcell("run --trace " + (folder / "t.json") + " -- sh -c '" + kPingPong + "; " + kPingPong + "'");
+  const std::string in_folder = "cd " + folder.path().string() + " && " SOFTCELL_COMMAND " run ",
+                    programs = " -- sh -c '" + kPingPong + "; " + kForgets + "; " + kPingPong + "'";
+  const CommandResult run = run_shell(in_folder + "--trace t.json" + programs);
   EXPECT_EQ(run.status, 0) << run.output;
-  EXPECT_TRUE(has(run, "softcell: '" + (folder / "t.json") + "' has the trace of the last of 2 processes\n"))
+  EXPECT_TRUE(has(run, "softcell: 3 processes have traces: 't.json', 't.2.json' to 't.3.json'\n"))
       << run.output;
+  const auto images_in = [&](const std::string& name) {
+    std::ifstream file(folder / name);
+    std::set<std::string> images;
+    const auto trace = nlohmann::json::parse(file);
+    for (const auto& event : trace["traceEvents"]) {
+      if (event.contains("cat") && event["cat"] == "job") images.insert(event["name"]);
+    }
+    return images;
+  };
+  EXPECT_EQ(images_in("t.json"), std::set<std::string>{"echoes"});
+  EXPECT_EQ(images_in("t.2.json"), std::set<std::string>{"breaks_rules"}) << "in the order of processes";
+  EXPECT_EQ(images_in("t.3.json"), std::set<std::string>{"echoes"});
+
+  const CommandResult printed =
+      run_shell(in_folder + "--trace -" + programs + " 2>said >first.json; cat said");
+  EXPECT_TRUE(has(printed,
+                  "softcell: standard output has the trace of the first of 3 processes; give "
+                  "--trace a file, and each has its own\n"))
+      << printed.output;
+  EXPECT_EQ(images_in("first.json"), std::set<std::string>{"echoes"});
+  const CommandResult taken = run_shell(in_folder + "--json t.2.json --trace t.json" + programs);
+  EXPECT_EQ(taken.status, 2);
+  EXPECT_TRUE(has(taken, "--json and the trace of process 2 are one file, t.2.json")) << taken.output;
+}
+
+TEST(RunVerb, SaysWhichOfSeveralProcessesHasNoTrace) {
+  const ScratchFolder folder;
+  const CommandResult run = run_softcell("run --trace " + (folder / "t.json") + " -- sh -c '" + kPingPong +
+                                         "; " + kForgets + " 0 _exit'");
+  EXPECT_EQ(run.status, 0) << run.output;
+  EXPECT_TRUE(has(run, "softcell: 1 of 2 processes has ended before it wrote a trace\n")) << run.output;
 }
 
 TEST(RunVerb, RefusesAFileThatItCannotWriteBeforeTheRun) {

@@ -11,6 +11,7 @@
 
 #include "ppu/numbers/half.h"
 #include "soft_body_scenes.h"
+#include "softcell/box2d/box2d_soft_bodies.h"
 #include "softcell/dma/buffer.h"
 #include "softcell/ls_sim/timing.h"
 #include "softcell/soft_bodies/shapes.h"
@@ -300,6 +301,73 @@ TEST(SpeSkinner, RefusesAModelWithoutAMesh) {
   EXPECT_THROW(skinner.add(block), std::invalid_argument);
   EXPECT_TRUE(skinner.begin_frame());  // nothing to do is no mistake
   skinner.finish_frame();
+}
+
+/// A game that makes models while it runs, level after level, would grow for ever.
+TEST(SoftBodies, LetGoOfAModelThatNobodyElseHas) {
+  SpeRuntime spes({.spes = 2});
+  for (const bool on_spes : {false, true}) {
+    BulletWorld bullet;
+    const auto owned = on_spes ? std::make_unique<BulletSoftBodies>(bullet.world(), spes)
+                               : std::make_unique<BulletSoftBodies>(bullet.world());
+    BulletSoftBodies& bodies = *owned;
+    bullet.add_box({20, 1, 20}, 0, {0, -0.5f, 0}, 0.6f);
+    const auto kept = ball();
+    SoftBody<3>* first = &bodies.add(kept, {0, 0.4f, 0});
+    std::weak_ptr<const SoftBodyModel<3>> one, broken;
+    {
+      auto model = ball();
+      one = model;
+      const SoftBody<3>& body = bodies.add(std::move(model), {2, 0.4f, 0});
+      auto brittle = make_soft_body_model(make_box({0.8f, 0.8f, 0.8f}, 0.2f),
+                                          {.cell_size = 0.2f, .fracture = Fracture{}});
+      broken = brittle;
+      SoftBody<3>& whole = bodies.add(std::move(brittle), {-2, 0.5f, 0});
+      for (int i = 0; i < 4; ++i) bullet.step(kFrame, 2);
+      const auto pieces = bodies.cut(whole, Cut::plane({-2, 0.5f, 0}, {0, 1, 0}));
+      ASSERT_FALSE(pieces.empty());
+      for (int i = 0; i < 4; ++i) bullet.step(kFrame, 2);
+      EXPECT_FALSE(broken.expired()) << "pieces are made from the whole";
+      for (const SoftBody<3>* piece : pieces) bodies.remove(*piece);
+      bodies.remove(whole);
+      bodies.remove(body);
+    }
+    bullet.step(kFrame, 2);
+    EXPECT_TRUE(one.expired()) << (on_spes ? "SPEs" : "PPU");
+    EXPECT_TRUE(broken.expired());
+    // Another body of a model that the program has kept finds what was made of it.
+    bodies.remove(*first);
+    first = &bodies.add(kept, {0, 0.4f, 0});
+    for (int i = 0; i < 60; ++i) bullet.step(kFrame, 2);
+    EXPECT_GT(first->centre_of_mass().y(), 0.3f);
+  }
+}
+
+TEST(SoftBodies2d, LetGoOfAModelThatNobodyElseHas) {
+  SpeRuntime spes({.spes = 2});
+  for (const bool on_spes : {false, true}) {
+    b2World world({0, -9.81f});
+    const auto owned =
+        on_spes ? std::make_unique<Box2dSoftBodies>(world, spes) : std::make_unique<Box2dSoftBodies>(world);
+    Box2dSoftBodies& bodies = *owned;
+    std::weak_ptr<const SoftBodyModel<2>> one;
+    {
+      auto model =
+          make_soft_body_model(lattice_from_cells(cells_from_rows(std::vector<std::string>(4, "####")), 0.1f),
+                               SoftBodySettings{.cell_size = 0.1f, .fracture = Fracture{}});
+      one = model;
+      SoftBody<2>& whole = bodies.add(std::move(model), {0, 0});
+      bodies.step(kFrame);
+      const auto pieces = bodies.cut(whole, Cut2d::line(whole.centre_of_mass(), {0, 1}));
+      ASSERT_FALSE(pieces.empty());
+      bodies.step(kFrame);
+      EXPECT_FALSE(one.expired()) << "pieces are made from the whole";
+      for (const SoftBody<2>* piece : pieces) bodies.remove(*piece);
+      bodies.remove(whole);
+    }
+    bodies.step(kFrame);
+    EXPECT_TRUE(one.expired()) << (on_spes ? "SPEs" : "PPU");
+  }
 }
 
 }  // namespace

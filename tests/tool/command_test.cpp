@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 #include <signal.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -554,6 +556,8 @@ std::pair<int, std::chrono::steady_clock::duration> interrupt_demo(const Scratch
   if (child == 0) {
     std::freopen("/dev/null", "w", stdout);
     std::freopen("/dev/null", "w", stderr);
+    const rlimit no_core{};
+    setrlimit(RLIMIT_CORE, &no_core);
     const std::string out = folder / "out", video = folder / "v.mp4", recording = folder / "r.rec",
                       trace = folder / "t.json", json = folder / "s.json";
     execl(SOFTCELL_COMMAND, "softcell", "demo", "3d", "--headless", "--scene", "drop", "--frames", "100000",
@@ -596,6 +600,17 @@ TEST(Command, StopsWithinASecondOfASignalAndKeepsWholeWhatItHasSoFar) {
     const CommandResult replay =
         run_softcell("demo 3d --headless --quiet --size 32x32 --replay " + (folder / "r.rec"));
     EXPECT_EQ(replay.status, 0) << replay.output;
+  }
+}
+
+TEST(Command, LeavesNoPartOfAFileWhenASignalEndsItAtOnce) {
+  for (const int signal : {SIGQUIT, SIGPIPE}) {
+    if (kSlowBuild && signal != SIGQUIT) continue;
+    SCOPED_TRACE(strsignal(signal));
+    const ScratchFolder folder;
+    EXPECT_EQ(interrupt_demo(folder, signal).first, 128 + signal);
+    EXPECT_EQ(files_in(folder.path()), std::set<std::string>{"out"});
+    for (const std::string& name : files_in(folder / "out")) EXPECT_TRUE(name.ends_with(".png")) << name;
   }
 }
 
@@ -1101,6 +1116,10 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"demo 2d --headless --scene man --image %s/cat.png", 2, "it has no body with own_image_side"},
         Refusal{SC_DEMO "--video ''", 2, "--video needs a value"},
         Refusal{"demo 2d --statistics", 2, "--headless"},
+        Refusal{"demo 2d --headless --statistics", 2,
+                "--statistics shows in pictures only: give --out or --video too"},
+        Refusal{"demo 3d --headless --turntable 6", 2,
+                "--turntable shows in pictures only: give --out or --video too"},
         Refusal{"demo 2d --headless --replay %s/cube.obj", 1, "line 1"},
         Refusal{SC_DEMO "--scene arena --mesh %s/cube.obj", 2, "--mesh"},
         Refusal{SC_DEMO "--cell 0.1", 2, "--mesh"},

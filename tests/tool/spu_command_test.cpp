@@ -504,6 +504,8 @@ TEST_F(SpuCommand, RunSaysWhenItIsInterrupted) {
     EXPECT_EQ(run.status, 130) << signal << ": " << run.output;
     EXPECT_NE(run.output.find("softcell: interrupted; no file is written\n"), std::string::npos)
         << run.output;
+    EXPECT_NE(run.output.find("\n0    interrupted  "), std::string::npos) << run.output;
+    EXPECT_EQ(run.output.find("deadline-exceeded"), std::string::npos) << run.output;
     EXPECT_FALSE(std::filesystem::exists(folder_ / "i.json")) << signal;
   }
 }

@@ -25,11 +25,11 @@ const format = {
   },
   /** To the nanosecond, for one event. */
   exactTime: (ns) => `${(ns / 1e3).toFixed(3).replace(/\B(?=(\d{3})+(?=\.))/g, " ")} µs`,
-  /** Bytes that move, in the units of `rate`. */
-  bytes: (n) => scaled(n, [[1, "bytes"], [1e3, "KB"], [1e6, "MB"], [1e9, "GB"]]),
-  /** Bytes of local store, of which there are 256 KB. */
-  store: (n) => scaled(n, [[1, "bytes"], [1024, "KB"]]),
-  rate: (bytesPerSecond) => scaled(bytesPerSecond, [[1, "B/s"], [1e3, "KB/s"], [1e6, "MB/s"], [1e9, "GB/s"]]),
+  /** Bytes that move, in the units of `rate`: 1 kB is 1000 bytes. */
+  bytes: (n) => scaled(n, [[1, "bytes"], [1e3, "kB"], [1e6, "MB"], [1e9, "GB"]]),
+  /** Bytes of local store, of which there are 256 KiB: 1 KiB is 1024 bytes. */
+  store: (n) => scaled(n, [[1, "bytes"], [1024, "KiB"]]),
+  rate: (bytesPerSecond) => scaled(bytesPerSecond, [[1, "B/s"], [1e3, "kB/s"], [1e6, "MB/s"], [1e9, "GB/s"]]),
   count: (n) => String(n).replace(/\B(?=(\d{3})+(?!\d))/g, " "),
   percent: (share) => share > 0 && share < 0.001 ? "< 0.1 %" : `${(100 * share).toFixed(share !== 0 && share < 0.0995 ? 1 : 0)} %`,
   address: (value) => `0x${value.toString(16).toUpperCase().padStart(5, "0")}`,

@@ -157,7 +157,7 @@ function showStore(image) {
   const end = Math.max(1, ...resident.map((section) => section.begin + section.bytes));
 
   const table = element("table");
-  fillTable(table, ["part", "from", "to", "bytes", "of 256 KB"], image.sections.map(({name, begin, bytes}) => [
+  fillTable(table, ["part", "from", "to", "bytes", "of 256 KiB"], image.sections.map(({name, begin, bytes}) => [
     element("span", {}, swatch(colourOf(name)), name), element("td", {class: "mono"}, format.address(begin)),
     element("td", {class: "mono"}, format.address(begin + bytes - 1)), format.count(bytes), format.percent(bytes / kStoreBytes)]));
   const stackText = !stack ? "" : image.stackUsed === null ? `Stack: ${format.count(stack.bytes)} bytes declared; what is used was not measured.` :
@@ -170,7 +170,7 @@ function showStore(image) {
 
   const parts = [
     element("h3", {}, image.name, image.checked ? " (checked) " : " ", element("span", {class: "total"},
-      `${format.store(total)} of 256 KB taken, budget ${format.store(image.budget)}`)),
+      `${format.store(total)} of 256 KiB taken, budget ${format.store(image.budget)}`)),
     whole, storeAxis(kStoreBytes)];
   if (end < kStoreBytes / 2) {
     parts.push(element("p", {class: "caption"}, `The image itself, its first ${format.store(end)}, enlarged` + (image.objects.length > 0 ? "; below it its variables and buffers:" : ":")),

@@ -16,6 +16,7 @@
 #include "command_line/usage_sentence.h"
 #include "softcell/base/assert.h"
 #include "softcell/base/text.h"
+#include "softcell/base/whole_file.h"
 #include "verb/exit_status.h"
 
 namespace {
@@ -71,6 +72,7 @@ void finish_printing() {
 int main(int argc, char** argv) {
   // A write beyond the limit of file sizes fails as one to a full disk does, and does not end the process.
   std::signal(SIGXFSZ, SIG_IGN);
+  base::remove_temporary_files_at({SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGPIPE});
   try {
     CommandLine command_line;
     try {

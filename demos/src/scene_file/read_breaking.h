@@ -33,32 +33,47 @@ void read_strengths(FieldReader& fields, std::vector<StrengthSlab<Dimension>>& s
 }
 
 /// Reads a table `cut` of a scene: a plane, line or stroke that cuts a body. The soft bodies must have been read.
-inline void read_cut(FieldReader& fields, const Place& place, ppu::Cut& where) {
+inline void read_cut(FieldReader& fields, ppu::Cut& where) {
   Eigen::Vector3f point{0, 0, 0}, normal{1, 0, 0}, edge{0, 0, 0}, way{0, 0, 0};
   fields.vector<3>("point", point, kCoordinate, Need::kRequired)
       .vector<3>("normal", normal, kCoordinate)
       .vector<3>("edge", edge, kCoordinate)
       .vector<3>("way", way, kCoordinate)
       .finish();
-  if (fields.has("edge") != fields.has("way") || fields.has("edge") == fields.has("normal"))
-    throw SceneError(place, fields.what() + " needs a normal, or an edge and a way");
-  const bool plane = fields.has("normal");
-  if ((plane ? normal.norm() : edge.cross(way).norm()) < 1e-6f)
-    throw SceneError(place, plane ? "normal of " + fields.what() + " must not be 0"
-                                  : fields.what() + " has no area: its edge and way are along one line");
+  const bool plane = fields.has("normal"), has_edge = fields.has("edge"), has_way = fields.has("way");
+  if (!plane && !has_edge && !has_way)
+    throw SceneError(fields.place(),
+                     fields.what() + " needs either the field 'normal' or the fields 'edge' and 'way'");
+  if (plane && (has_edge || has_way))
+    throw SceneError(fields.place(has_edge ? "edge" : "way"),
+                     fmt::format("{} has the field 'normal', so it may not have '{}'", fields.what(),
+                                 has_edge ? "edge" : "way"));
+  if (!plane && has_edge != has_way)
+    throw SceneError(fields.place(),
+                     fmt::format("{} has the field '{}', so it needs '{}', too", fields.what(),
+                                 has_edge ? "edge" : "way", has_edge ? "way" : "edge"));
+  if (plane && normal.norm() < 1e-6f)
+    throw SceneError(fields.place("normal"), "normal of " + fields.what() + " must not be 0");
+  if (!plane && edge.cross(way).norm() < 1e-6f)
+    throw SceneError(fields.place(), fields.what() + " has no area: its edge and way are along one line");
   where = plane ? ppu::Cut::plane(point, normal) : ppu::Cut::stroke(point, edge, way);
 }
-inline void read_cut(FieldReader& fields, const Place& place, ppu::Cut2d& where) {
+inline void read_cut(FieldReader& fields, ppu::Cut2d& where) {
   Eigen::Vector2f point{0, 0}, normal{1, 0}, way{0, 0};
   fields.vector<2>("point", point, kCoordinate, Need::kRequired)
       .vector<2>("normal", normal, kCoordinate)
       .vector<2>("way", way, kCoordinate)
       .finish();
-  if (fields.has("way") == fields.has("normal"))
-    throw SceneError(place, fields.what() + " needs a normal, or a way");
-  const bool line = fields.has("normal");
-  if ((line ? normal.norm() : way.norm()) < 1e-6f)
-    throw SceneError(place, (line ? "normal of " : "way of ") + fields.what() + " must not be 0");
+  const bool line = fields.has("normal"), has_way = fields.has("way");
+  if (!line && !has_way)
+    throw SceneError(fields.place(), fields.what() + " needs either the field 'normal' or the field 'way'");
+  if (line && has_way)
+    throw SceneError(fields.place("way"),
+                     fields.what() + " has the field 'normal', so it may not have 'way'");
+  const char* const direction = line ? "normal" : "way";
+  if ((line ? normal : way).norm() < 1e-6f)
+    throw SceneError(fields.place(direction),
+                     fmt::format("{} of {} must not be 0", direction, fields.what()));
   where = line ? ppu::Cut2d::line(point, normal) : ppu::Cut2d::stroke(point, way);
 }
 
@@ -70,7 +85,7 @@ void read_cuts(std::span<const Value> items, SceneOf& scene) {
     cut.described = fields.described();
     cut.body = read_body(fields, scene);
     fields.number("time", cut.time, kTime, Need::kRequired);
-    read_cut(fields, items[i].place, cut.where);
+    read_cut(fields, cut.where);
   }
 }
 

@@ -1,6 +1,7 @@
 #include "assisted_calls.h"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <sys/time.h>
 #include <unistd.h>
 
@@ -216,17 +217,32 @@ std::optional<AssistedCalls::Result> AssistedCalls::input(std::uint32_t function
 
 // ---- streams and files
 
-/// @return  a handle; 0 is an error
-AssistedCalls::Result AssistedCalls::open_stream() {
+/// @return  null is an error, and errno says which
+std::FILE* AssistedCalls::opened_stream() {
   const std::string mode = memory_.text(argument(1));
   const std::optional<int> flags = flags_of_mode(mode);
-  if (!flags) return {0, EINVAL};
+  if (!flags) return errno = EINVAL, nullptr;
   const int descriptor = files_.open(memory_.text(argument(0)), *flags, 0666);
-  if (descriptor < 0) return {0, errno};
+  if (descriptor < 0) return nullptr;
   std::FILE* const stream = fdopen(descriptor, mode.c_str());
-  if (stream == nullptr) return close(descriptor), Result{0, EINVAL};
-  const std::uint32_t handle = files_.add_stream(stream);
+  if (stream == nullptr) close(descriptor), errno = EINVAL;
+  return stream;
+}
+
+/// fopen. @return  a handle; 0 is an error
+AssistedCalls::Result AssistedCalls::open_stream() {
+  const std::uint32_t handle = files_.add_stream(opened_stream());
   return {handle, handle == 0 ? errno : 0};
+}
+
+/// freopen. A path of null, for another mode of the same file, is not known.
+AssistedCalls::Result AssistedCalls::reopen_stream() {
+  const std::uint32_t handle = argument(2);
+  if (files_.stream(handle) == nullptr) return {0, errno};
+  std::FILE* const opened = argument(0) == 0 ? (errno = EINVAL, nullptr) : opened_stream();
+  const int error = errno;
+  if (opened == nullptr) return files_.close_stream(handle), Result{0, error};
+  return files_.replace_stream(handle, opened) ? Result{handle, 0} : Result{0, errno};
 }
 
 AssistedCalls::Result AssistedCalls::temporary_file() {
@@ -245,6 +261,8 @@ std::optional<AssistedCalls::Result> AssistedCalls::files(std::uint32_t function
   switch (function) {
     case kFopen:
       return open_stream();
+    case kFreopen:
+      return reopen_stream();
     case kTmpfile:
       return temporary_file();
     case kFclose:
@@ -311,6 +329,41 @@ AssistedCalls::Result AssistedCalls::write_descriptor() {
   return of_host(write(descriptor, data.data(), data.size()));
 }
 
+/// stat and lstat
+AssistedCalls::Result AssistedCalls::status_of_path(int more_flags) {
+  const int descriptor = files_.open(memory_.text(argument(0)), O_PATH | O_CLOEXEC | more_flags, 0);
+  if (descriptor < 0) return {-1, errno};
+  const Result result = store_status(descriptor);
+  close(descriptor);
+  return result;
+}
+
+/// A word for each member that newlib knows, in its order. [newlib, jsre.h] documented
+AssistedCalls::Result AssistedCalls::store_status(int descriptor) {
+  struct stat status {};
+  if (fstat(descriptor, &status) != 0) return {-1, errno};
+  if (status.st_size > INT32_MAX) return {-1, EOVERFLOW};
+  std::uint32_t to = argument(1);
+  const auto store = [&](auto value) {
+    memory_.set_word(to, static_cast<std::uint32_t>(value));
+    to += 4;
+  };
+  store(status.st_dev);
+  store(status.st_ino);
+  store(status.st_mode);
+  store(status.st_nlink);
+  store(status.st_uid);
+  store(status.st_gid);
+  store(status.st_rdev);
+  store(status.st_size);
+  store(status.st_blksize);
+  store(status.st_blocks);
+  store(status.st_atim.tv_sec);
+  store(status.st_mtim.tv_sec);
+  store(status.st_ctim.tv_sec);
+  return {0, 0};
+}
+
 /// Seconds and nanoseconds, a word each.
 AssistedCalls::Result AssistedCalls::sleep() {
   using namespace std::chrono;
@@ -356,6 +409,14 @@ AssistedCalls::Result AssistedCalls::posix(std::uint32_t function) {
     case kFtruncate:
       return with_descriptor(
           [&](int descriptor) { return ftruncate(descriptor, static_cast<std::int32_t>(argument(1))); });
+    case kStat:
+      return status_of_path(0);
+    case kLstat:
+      return status_of_path(O_NOFOLLOW);
+    case kFstat: {
+      const int descriptor = files_.descriptor_of(argument(0));
+      return descriptor < 0 ? Result{-1, EBADF} : store_status(descriptor);
+    }
     case kClose:
       return of_host(files_.close_descriptor(argument(0)));
     case kUnlink:

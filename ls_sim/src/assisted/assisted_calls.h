@@ -5,6 +5,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <cstdio>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -35,6 +36,7 @@ enum C99Function : std::uint32_t {
   kFputc = 11,
   kFputs = 12,
   kFread = 13,
+  kFreopen = 14,
   kFseek = 15,
   kFtell = 17,
   kFwrite = 18,
@@ -58,10 +60,13 @@ enum C99Function : std::uint32_t {
 };
 enum PosixFunction : std::uint32_t {
   kClose = 2,
+  kFstat = 4,
   kGettimeofday = 7,
   kLseek = 9,
+  kLstat = 10,
   kOpen = 15,
   kRead = 16,
+  kStat = 23,
   kUnlink = 24,
   kWrite = 27,
   kFtruncate = 28,
@@ -123,11 +128,15 @@ class AssistedCalls {
   Result read_items();
   Result scan(std::FILE* from, int format_argument);
   Result scan_text();
+  std::FILE* opened_stream();
   Result open_stream();
+  Result reopen_stream();
   Result temporary_file();
   Result open_descriptor();
   Result read_descriptor();
   Result write_descriptor();
+  Result status_of_path(int more_flags);
+  Result store_status(int descriptor);
   Result sleep();
 
   Files& files_;

@@ -1,6 +1,7 @@
 #include "files.h"
 
 #include <fcntl.h>
+#include <stdio_ext.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -31,6 +32,20 @@ class FilesOfProcess final : public Files {
   Stream standard_stream(std::uint32_t handle) override {
     std::FILE* const stream = handle == kStandardInput ? stdin : handle == kStandardOutput ? stdout : stderr;
     return {stream, [](std::FILE*) {}};
+  }
+  /// That of the process stays, and leads to the other file.
+  bool replace_standard_stream(std::uint32_t handle, const Stream& opened) override {
+    std::FILE* const stream = standard_stream(handle).get();
+    const bool reads = handle == kStandardInput;
+    const int access = fcntl(fileno(opened.get()), F_GETFL) & O_ACCMODE;
+    if (access == (reads ? O_WRONLY : O_RDONLY)) return errno = EINVAL, false;
+    if (reads)
+      __fpurge(stream);
+    else
+      std::fflush(stream);
+    if (dup2(fileno(opened.get()), fileno(stream)) < 0) return false;
+    std::clearerr(stream);
+    return true;
   }
 };
 
@@ -72,6 +87,16 @@ int Files::close_stream(std::uint32_t handle) {
   const std::lock_guard lock(mutex_);
   streams_[handle - kFirstHandle] = nullptr;
   return result;
+}
+
+bool Files::replace_stream(std::uint32_t handle, std::FILE* opened) {
+  const Stream replacement(opened, &std::fclose), replaced = stream(handle);
+  if (replaced == nullptr) return false;
+  if (handle < kFirstHandle) return replace_standard_stream(handle, replacement);
+  std::fflush(replaced.get());
+  const std::lock_guard lock(mutex_);
+  streams_[handle - kFirstHandle] = replacement;
+  return true;
 }
 
 void Files::close_streams() {

@@ -43,10 +43,13 @@ class Files {
   /// @return  null for a handle that stands for no stream
   Stream stream(std::uint32_t handle);
   int close_stream(std::uint32_t handle);
+  /// The handle stands for the opened stream from now on. @return  whether it does; if not, the opened one is closed
+  bool replace_stream(std::uint32_t handle, std::FILE* opened);
 
  protected:
   /// Of a StandardStream.
   virtual Stream standard_stream(std::uint32_t handle) = 0;
+  virtual bool replace_standard_stream(std::uint32_t handle, const Stream& opened) = 0;
   void close_streams();
 
  private:
@@ -78,9 +81,12 @@ class FilesInFolder final : public Files {
   void close_all();
 
  protected:
-  Stream standard_stream(std::uint32_t handle) override;
+  Stream standard_stream(std::uint32_t handle) override { return standard(handle); }
+  bool replace_standard_stream(std::uint32_t handle, const Stream& opened) override;
 
  private:
+  Stream& standard(std::uint32_t handle);
+
   const HostCalls& calls_;
   const std::atomic<bool>& interrupted_;
   Stream input_, output_, error_;

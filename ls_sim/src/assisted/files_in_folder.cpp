@@ -24,8 +24,9 @@ constexpr std::size_t kMostDescriptors = 64;
 /// Opens what lies in a folder; the kernel refuses all that leads out of it.
 int open_beneath(int folder, const char* path, int flags, unsigned int mode) {
   open_how how{};
-  // A pipe would wait for ever.
-  how.flags = static_cast<unsigned int>(flags) | O_CLOEXEC | O_NONBLOCK | O_NOCTTY;
+  // A pipe would wait for ever. With O_PATH nothing is opened.
+  const int more_flags = (flags & O_PATH) != 0 ? O_CLOEXEC : O_CLOEXEC | O_NONBLOCK | O_NOCTTY;
+  how.flags = static_cast<unsigned int>(flags | more_flags);
   how.mode = (how.flags & O_CREAT) != 0 ? mode & 0666 : 0;
   how.resolve = RESOLVE_BENEATH | RESOLVE_NO_MAGICLINKS;
   return static_cast<int>(syscall(SYS_openat2, folder, path, &how, sizeof how));
@@ -103,8 +104,13 @@ void FilesInFolder::close_all() {
   descriptors_.clear();
 }
 
-Stream FilesInFolder::standard_stream(std::uint32_t handle) {
+Stream& FilesInFolder::standard(std::uint32_t handle) {
   return handle == kStandardInput ? input_ : handle == kStandardOutput ? output_ : error_;
+}
+
+bool FilesInFolder::replace_standard_stream(std::uint32_t handle, const Stream& opened) {
+  standard(handle) = opened;
+  return true;
 }
 
 int FilesInFolder::open(const std::string& path, int flags, unsigned int mode) {

@@ -80,7 +80,39 @@ Conversion read_conversion(const std::string& format, std::size_t& at, FormatArg
   return c;
 }
 
-std::string convert(const Conversion& c, FormatArguments& arguments) {
+/// A character of a wide text, as UTF-8; nothing for a number that stands for none.
+std::string utf8(std::uint32_t character) {
+  const auto byte = [&](unsigned int head, unsigned int shift, unsigned int mask) {
+    return static_cast<char>(head | (character >> shift & mask));
+  };
+  if (character < 0x80) return {byte(0, 0, 0x7F)};
+  if (character < 0x800) return {byte(0xC0, 6, 0x1F), byte(0x80, 0, 0x3F)};
+  if (character >= 0xD800 && character < 0xE000) return {};
+  if (character < 0x10000) return {byte(0xE0, 12, 0x0F), byte(0x80, 6, 0x3F), byte(0x80, 0, 0x3F)};
+  if (character > 0x10FFFF) return {};
+  return {byte(0xF0, 18, 0x07), byte(0x80, 12, 0x3F), byte(0x80, 6, 0x3F), byte(0x80, 0, 0x3F)};
+}
+
+/// A text in the field of the conversion.
+std::string padded(Conversion c, const std::string& text) {
+  c.kind = 's';
+  c.precision = -1;
+  return print(c.for_host(""), text.c_str());
+}
+
+/// A wide text up to its zero, as at the longest `most` bytes of UTF-8.
+std::string wide_text(std::uint32_t lsa, std::size_t most, const CallMemory& memory) {
+  std::string text;
+  for (std::uint32_t read = 0; read < dma::kLocalStoreBytes; read += 4) {
+    const std::uint32_t character = memory.word(lsa + read);
+    const std::string bytes = utf8(character);
+    if (character == 0 || text.size() + bytes.size() > most) break;
+    text += bytes;
+  }
+  return text;
+}
+
+std::string convert(const Conversion& c, FormatArguments& arguments, const CallMemory& memory) {
   switch (c.kind) {
     case 'd':
     case 'i': {
@@ -102,9 +134,11 @@ std::string convert(const Conversion& c, FormatArguments& arguments) {
                                                      : value);
     }
     case 'c':
+      if (c.length == "l") return padded(c, utf8(arguments.next_word()));
       return print(c.for_host(""), static_cast<int>(arguments.next_word() & 0xFFu));
     case 's': {
       const std::size_t most = c.precision < 0 ? std::string::npos : static_cast<std::size_t>(c.precision);
+      if (c.length == "l") return padded(c, wide_text(arguments.next_word(), most, memory));
       return print(c.for_host(""), arguments.text(arguments.next_word(), most).c_str());
     }
     case 'p': {
@@ -155,7 +189,7 @@ std::string format_text(const std::string& format, FormatArguments& arguments, C
       }
       static const std::string kKinds = "diuoxXcspaAeEfFgG%";
       const bool known = conversion.kind != '\0' && kKinds.find(conversion.kind) != std::string::npos;
-      text += known ? convert(conversion, arguments) : format.substr(begin, at - begin);
+      text += known ? convert(conversion, arguments, memory) : format.substr(begin, at - begin);
     }
   }
   text.resize(std::min(text.size(), kMostText));

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <memory>
 #include <string_view>
+#include <vector>
 
 namespace softcell::ls_sim::assisted {
 namespace {
@@ -59,6 +60,20 @@ int scan_one(std::FILE* from, const std::string& conversion, Value* value, long 
 #pragma GCC diagnostic pop
   consumed += used;
   return stored;
+}
+
+/// The characters of UTF-8; a byte that belongs to none is one of its own.
+std::vector<std::uint32_t> wide(std::string_view text) {
+  std::vector<std::uint32_t> characters;
+  for (std::size_t at = 0; at < text.size();) {
+    const auto head = static_cast<std::uint8_t>(text[at++]);
+    std::size_t more = head >= 0xF0 ? 3 : head >= 0xE0 ? 2 : head >= 0xC0 ? 1 : 0;
+    more = at + more <= text.size() ? more : 0;
+    std::uint32_t character = more == 0 ? head : head & (0x3Fu >> more);
+    for (; more > 0; --more) character = character << 6 | (static_cast<std::uint8_t>(text[at++]) & 0x3Fu);
+    characters.push_back(character);
+  }
+  return characters;
 }
 
 class Scan {
@@ -177,7 +192,7 @@ class Scan {
     }
     consumed_ += static_cast<long long>(found.size());
     if (!got_one(c, found.empty() ? EOF : 1)) return false;
-    if (c.stores) memory_.set_bytes(arguments_.next_word(), found);
+    if (c.stores) store(c, found);
     return true;
   }
 
@@ -189,11 +204,22 @@ class Scan {
     const std::unique_ptr<char, decltype(&std::free)> owner(found, &std::free);
     if (!got_one(c, scanned)) return false;
     if (!c.stores) return true;
-    const std::uint32_t to = arguments_.next_word();
     const std::string_view letters(found);
-    memory_.set_bytes(to, letters);
-    memory_.set_byte(to + static_cast<std::uint32_t>(letters.size()), 0);
+    const std::uint32_t end = store(c, letters);
+    memory_.set_value(end, 0, c.length == "l" ? 4 : 1);
     return true;
+  }
+
+  /// Stores a text, without a zero at its end. @return  the address behind it
+  std::uint32_t store(const ScanConversion& c, std::string_view letters) {
+    std::uint32_t to = arguments_.next_word();
+    if (c.length != "l")
+      return memory_.set_bytes(to, letters), to + static_cast<std::uint32_t>(letters.size());
+    for (const std::uint32_t character : wide(letters)) {
+      memory_.set_word(to, character);
+      to += 4;
+    }
+    return to;
   }
 
   std::FILE* from_;

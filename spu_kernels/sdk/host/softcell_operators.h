@@ -66,6 +66,19 @@ SC_SDK_INLINE Mask<T_> operator!=(Vector<T_> a_, Vector<T_> b_) {
   return ~(a_ == b_);
 }
 template <class T_>
+SC_SDK_INLINE Mask<T_> operator!(Vector<T_> a_) {
+  return a_ == splats<T_>(T_());
+}
+// Both sides are computed, as on an SPU.
+template <class T_, class U_, If<sizeof(T_) == sizeof(U_)> = 0>
+SC_SDK_INLINE Mask<T_> operator&&(Vector<T_> a_, Vector<U_> b_) {
+  return ~((!a_) | (!b_));
+}
+template <class T_, class U_, If<sizeof(T_) == sizeof(U_)> = 0>
+SC_SDK_INLINE Mask<T_> operator||(Vector<T_> a_, Vector<U_> b_) {
+  return ~((!a_) & (!b_));
+}
+template <class T_>
 SC_SDK_INLINE Mask<T_> operator<(Vector<T_> a_, Vector<T_> b_) {
   return b_ > a_;
 }

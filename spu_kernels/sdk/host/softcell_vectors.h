@@ -19,6 +19,11 @@
 // Like the SPU's vectors, ours may look at memory that was written as something else.
 #define SC_SDK_REGISTER __attribute__((may_alias, aligned(16)))
 
+#define SC_SDK_IS_NO_CONDITION                                                       \
+  __attribute__((                                                                    \
+      error("a vector is no condition: write spu_sel(b, a, mask) for mask ? a : b, " \
+            "and ask for a lane with spu_extract()")))
+
 namespace softcell_sdk {
 
 template <class Lane>
@@ -123,6 +128,8 @@ struct SC_SDK_REGISTER Vector : Lanes<T_, 16 / sizeof(T_)> {
     this->raw = other.raw;
   }
 
+  SC_SDK_IS_NO_CONDITION explicit operator bool() const;
+
   /// A lane.
   SC_SDK_INLINE T_& operator[](int lane) { return reinterpret_cast<T_*>(&this->raw)[lane]; }
   SC_SDK_INLINE const T_& operator[](int lane) const { return reinterpret_cast<const T_*>(&this->raw)[lane]; }
@@ -130,6 +137,8 @@ struct SC_SDK_REGISTER Vector : Lanes<T_, 16 / sizeof(T_)> {
     return reinterpret_cast<volatile T_*>(&this->raw)[lane];
   }
 };
+
+#undef SC_SDK_IS_NO_CONDITION
 
 }  // namespace softcell_sdk
 

@@ -47,6 +47,7 @@ enum C99Call : uint32_t {
   kFputc = 11,
   kFputs = 12,
   kFread = 13,
+  kFreopen = 14,
   kFseek = 15,
   kFtell = 17,
   kFwrite = 18,
@@ -67,10 +68,13 @@ enum C99Call : uint32_t {
 };
 enum PosixCall : uint32_t {
   kClose = 2,
+  kFstat = 4,
   kGettimeofday = 7,
   kLseek = 9,
+  kLstat = 10,
   kOpen = 15,
   kRead = 16,
+  kStat = 23,
   kUnlink = 24,
   kWrite = 27,
   kFtruncate = 28,

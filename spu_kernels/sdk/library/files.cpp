@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <stdarg.h>
 #include <stdio.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "assist.h"
@@ -16,10 +17,18 @@ extern "C" {
 int errno;
 
 FILE* fopen(const char* path, const char* mode) { return stream(call(kFopen, path, mode)); }
+FILE* freopen(const char* path, const char* mode, FILE* file) {
+  return stream(call(kFreopen, path, mode, file));
+}
 FILE* tmpfile() { return stream(call(kTmpfile)); }
 int fclose(FILE* file) { return call(kFclose, file); }
 int fseek(FILE* file, long offset, int from) { return call(kFseek, file, offset, from); }
 long ftell(FILE* file) { return call(kFtell, file); }
+int fgetpos(FILE* file, fpos_t* to) {
+  *to = ftell(file);
+  return *to < 0 ? -1 : 0;
+}
+int fsetpos(FILE* file, const fpos_t* from) { return fseek(file, *from, SEEK_SET); }
 void rewind(FILE* file) { call(kRewind, file); }
 int feof(FILE* file) { return call(kFeof, file); }
 int ferror(FILE* file) { return call(kFerror, file); }
@@ -43,5 +52,8 @@ off_t lseek(int file, off_t offset, int from) { return call(kLseek, file, offset
 int ftruncate(int file, off_t length) { return call(kFtruncate, file, length); }
 int access(const char* path, int mode) { return call(kAccess, path, mode); }
 int unlink(const char* path) { return call(kUnlink, path); }
+int stat(const char* path, struct stat* to) { return call(kStat, path, to); }
+int lstat(const char* path, struct stat* to) { return call(kLstat, path, to); }
+int fstat(int file, struct stat* to) { return call(kFstat, file, to); }
 
 }  // extern "C"

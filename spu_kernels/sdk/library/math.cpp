@@ -68,6 +68,33 @@ double of_bits(int64_t bits) {
   return x;
 }
 
+bool is_nan(double x) { return (bits_of(x) & INT64_MAX) > 0x7FF0000000000000; }
+
+/// The numbers in their order: 0 has the place 0, the one above it 1.
+int64_t place_of(double x) {
+  const int64_t bits = bits_of(x);
+  return bits < 0 ? INT64_MIN - bits : bits;
+}
+double at_place(int64_t place) { return of_bits(place < 0 ? INT64_MIN - place : place); }
+
+/// Likewise of floats: above 0 lies the smallest normal one, and nothing above the largest.
+constexpr int32_t kDenormals = 0x7FFFFF, kLastPlace = 0x7F7FFFFF - kDenormals;
+int32_t place_of(float x) {
+  int32_t bits;
+  __builtin_memcpy(&bits, &x, sizeof bits);
+  const int32_t place = (bits & INT32_MAX) - kDenormals;
+  const int32_t within = place < 0 ? 0 : place > kLastPlace ? kLastPlace : place;
+  return bits < 0 ? -within : within;
+}
+float float_at_place(int32_t place) {
+  const int32_t size = place < 0 ? -place : place;
+  const int32_t within = size > kLastPlace ? kLastPlace : size;
+  const int32_t bits = within == 0 ? 0 : (within + kDenormals) | (place < 0 ? INT32_MIN : 0);
+  float x;
+  __builtin_memcpy(&x, &bits, sizeof x);
+  return x;
+}
+
 double size_of(double x) { return of_bits(bits_of(x) & INT64_MAX); }
 double with_sign_of(double x, double y) {
   return of_bits((bits_of(x) & INT64_MAX) | (bits_of(y) & INT64_MIN));
@@ -647,6 +674,30 @@ float modff(float x, float* whole) {
 float fmaf(float x, float y, float z) {
   const DoubleArithmetic rounding;
   return as_it_is_here(to_float(from_float(as_it_is_here(x)) * from_float(y) + from_float(as_it_is_here(z))));
+}
+
+/// Rounded once.
+double fma(double x, double y, double z) {
+  const DoubleArithmetic rounding;
+#ifndef __x86_64__
+  return spu_extract(spu_madd(spu_promote(x, 0), spu_promote(y, 0), spu_promote(z, 0)), 0);
+#else
+  const __m128d sum = _mm_fmadd_sd(_mm_set_sd(as_it_is_here(x)), _mm_set_sd(y), _mm_set_sd(z));
+  return as_it_is_here(_mm_cvtsd_f64(sum));
+#endif
+}
+
+double nextafter(double x, double y) {
+  if (is_nan(x) || is_nan(y)) return x + y;
+  const int64_t from = place_of(x), to = place_of(y);
+  if (from == to) return y;
+  const double next = at_place(from < to ? from + 1 : from - 1);
+  return next == 0 ? with_sign_of(next, x) : next;
+}
+float nextafterf(float x, float y) {
+  const int32_t from = place_of(x), to = place_of(y);
+  if (from == to) return y;
+  return float_at_place(from < to ? from + 1 : from - 1);
 }
 
 #define SC_TO_INTEGER(type, name, function)                      \

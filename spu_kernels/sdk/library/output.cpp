@@ -1,6 +1,7 @@
 // stdio.h: what prints.
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "assist.h"
@@ -15,6 +16,16 @@ int vsnprintf(char* to, size_t bytes, const char* format, va_list list) {
   return call(kVsnprintf, to, bytes, format, list);
 }
 int vsprintf(char* to, const char* format, va_list list) { return vsnprintf(to, 0x40000, format, list); }
+
+int vasprintf(char** to, const char* format, va_list list) {
+  va_list again;
+  va_copy(again, list);
+  const int length = vsnprintf(nullptr, 0, format, again);
+  va_end(again);
+  *to = length < 0 ? nullptr : static_cast<char*>(malloc(static_cast<size_t>(length) + 1));
+  return *to == nullptr ? -1 : vsnprintf(*to, static_cast<size_t>(length) + 1, format, list);
+}
+int asprintf(char** to, const char* format, ...) { SC_VARIADIC(format, vasprintf(to, format, list)); }
 
 int printf(const char* format, ...) { SC_VARIADIC(format, vprintf(format, list)); }
 int fprintf(FILE* file, const char* format, ...) { SC_VARIADIC(format, vfprintf(file, format, list)); }

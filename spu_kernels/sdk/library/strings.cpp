@@ -161,7 +161,8 @@ char* strerror(int error) {
                  {EDOM, "Numerical argument out of domain"},
                  {ERANGE, "Numerical result out of range"},
                  {ENAMETOOLONG, "File name too long"},
-                 {ENOSYS, "Function not implemented"}};
+                 {ENOSYS, "Function not implemented"},
+                 {EOVERFLOW, "Value too large for defined data type"}};
   for (const auto& known : kErrors)
     if (known.number == error) return const_cast<char*>(known.text);
   return const_cast<char*>("Unknown error");

@@ -1,5 +1,7 @@
 /* Threads of the PPU side and SPEs share the objects of libsync.h in main storage. */
-#include <libsync.h>
+#include <atomic_set.h>
+#include <cond_wait.h>
+#include <mutex_lock.h>
 #include <unistd.h>
 
 #include "../spu/shared_objects.h"

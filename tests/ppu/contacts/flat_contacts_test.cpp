@@ -15,6 +15,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <tuple>
 #include <vector>
 
@@ -773,6 +774,51 @@ TEST(FlatContacts, TheSameBitsForAnyNumberOfSpesAndSchedule) {
   const std::uint64_t expected = fall(one);
   EXPECT_EQ(fall(six), expected);
   EXPECT_EQ(fall(lazy), expected);
+}
+
+/// A block asleep on the floor, one that hangs on a rope from a place in the world, and one that the program pushes with a wall.
+/// @param shift  of the world's origin in each step, metres   @return  where they are then, in the coordinates of the beginning
+std::array<Vector2f, 3> where_they_are(ContactMethod method, const Vector2f& shift) {
+  World2d w(9.81f, method);
+  w.add_box({0, -1}, {50, 1});
+  b2Body* const wall = w.add_box({6, 1}, {0.1f, 1});
+  SoftBody<2>& asleep = w.soft.add(rectangle_model({4, 4}, calm()), {0, 0.2f});
+  SoftBody<2>& hangs = w.soft.add(rectangle_model({3, 3}, calm()), {-4, 3});
+  SoftBody<2>& pushed = w.soft.add(rectangle_model({3, 3}, calm()), {6.4f, 0.2f});
+  const Vector2f top = Vector2f(-4, 3) + Vector2f(0.375f, 0.75f);
+  AttachmentSettings<2> rope;
+  rope.kind = AttachmentKind::kRope;
+  rope.point = top + Vector2f(0, 0.5f);
+  rope.length = 0.5f;
+  w.soft.attach(hangs, Patch<2>::of_surface(top, 0.3f), rope);
+  w.soft.let_sleep(SleepSettings{});
+  w.run(10);
+  EXPECT_TRUE(asleep.asleep());
+  Vector2f origin(0, 0);
+  for (int i = 0; i < 120; ++i) {
+    w.soft.shift_origin(shift);
+    origin += shift;
+    wall->SetTransform(wall->GetPosition() + b2Vec2(0.5f * kStep2d, 0), 0);
+    w.soft.step(kStep2d);
+    EXPECT_TRUE(asleep.asleep());
+  }
+  return {asleep.centre_of_mass() + origin, hangs.centre_of_mass() + origin,
+          pushed.centre_of_mass() + origin};
+}
+
+/// Until then all static bodies seemed to be moved, and carried along what lay on them.
+TEST(ShiftOrigin, MovesEverythingAndPushesNothing) {
+  for (const ContactMethod method : {ContactMethod::kSurface, ContactMethod::kSpheres})
+    for (const Vector2f& shift : {Vector2f(0.01f, 0), Vector2f(0.7f, -0.3f), Vector2f(-20, 5)}) {
+      const auto expected = where_they_are(method, {0, 0}), shifted = where_they_are(method, shift);
+      EXPECT_GT(expected[2].x(), 6.8f) << "the wall pushes nothing";
+      for (std::size_t i = 0; i < expected.size(); ++i)
+        EXPECT_LT((shifted[i] - expected[i]).norm(), 0.01f)
+            << i << " shifted by " << shift.transpose()
+            << (method == ContactMethod::kSpheres ? ", circles" : ", surfaces");
+    }
+  World2d w(9.81f, ContactMethod::kSurface);
+  EXPECT_THROW(w.soft.shift_origin({0, std::numeric_limits<float>::infinity()}), std::invalid_argument);
 }
 
 }  // namespace

@@ -345,5 +345,30 @@ TEST(MovingObstacles, ALightCrateOfAGameInAPlaneCarriesAHeavySoftBody) {
   }
 }
 
+/// Bullet does not look at a static body's velocity, which is often left from when it was dynamic.
+TEST(MovingObstacles, ACrateThatIsFrozenInFlightCarriesNothingAway) {
+  struct Left {
+    btVector3 velocity, spin;
+  };
+  for (const auto& [velocity, spin] : {Left{{1, 0, 0}, {0, 0, 0}}, Left{{0, -3, 0}, {0, 0, 0}},
+                                       Left{{0, 3, 0}, {0, 0, 0}}, Left{{0, 0, 0}, {0, 5, 0}}}) {
+    ContactWorld w;
+    btRigidBody& crate = w.add(std::make_unique<btBoxShape>(btVector3(0.5f, 0.25f, 0.5f)), 2, {0, -0.25f, 0});
+    w.world.removeRigidBody(&crate);
+    crate.setLinearVelocity(velocity);
+    crate.setAngularVelocity(spin);
+    crate.setMassProps(0, {0, 0, 0});
+    w.world.addRigidBody(&crate);
+    const SoftBody<3>& soft =
+        w.add(make_box({0.4f, 0.4f, 0.4f}, kOfCube), settings_of(kOfCube, 0.7f, 0.3f), {0, 0.22f, 0});
+    w.bodies.let_sleep(SleepSettings{});
+    w.run(180);
+    const Vector3f centre = soft.centre_of_mass();
+    EXPECT_LT(centre.cwiseProduct(Vector3f(1, 0, 1)).norm(), 0.02f) << to_eigen(velocity).transpose();
+    EXPECT_NEAR(ContactWorld::lowest_drawn(soft), 0, 0.1f * kOfCube) << to_eigen(velocity).transpose();
+    EXPECT_TRUE(soft.asleep()) << to_eigen(spin).transpose();
+  }
+}
+
 }  // namespace
 }  // namespace softcell::ppu

@@ -31,9 +31,19 @@ static void parts(void) {
   CHECK(lrintf(-2.5f) == -2 && lroundf(-2.5f) == -3 && llrintf(3.5f) == 4 && llroundf(1e10f) == 10000000000ll);
 }
 
+static void neighbours(void) {
+  CHECK(nextafter(1, 2) == 0x1.0000000000001p0 && nextafter(1, 0) == 0x1.FFFFFFFFFFFFFp-1 && nextafter(3, 3) == 3);
+  CHECK(nextafter(-1, -2) == -0x1.0000000000001p0 && nextafter(HUGE_VAL, 0) == 0x1.FFFFFFFFFFFFFp1023);
+  CHECK(nextafterf(1, 2) == 0x1.000002p0f && nextafterf(-1, 2) == -0x1.FFFFFEp-1f && nextafterf(2, 2) == 2);
+  CHECK(nextafterf(0, 1) == 0x1p-126f && nextafterf(0, -1) == -0x1p-126f && nextafterf(0x1p-126f, 0) == 0);
+  CHECK(nextafterf(HUGE_VALF, 1) == 0x1.FFFFFCp127f && nextafterf(0x1.FFFFFCp127f, HUGE_VALF) == HUGE_VALF);
+}
+
 static volatile double one = 1, endless = HUGE_VAL, none = NAN;
 
 static void floats(void) {
+  volatile double x = 0x1.0000001p0;
+  CHECK(fma(x, x, -1 - 0x1p-27) == 0x1p-56 && fma(3, 4, -12) == 0);
   CHECK(fmaf(3, 4, -12) == 0 && fmaf(0x1.000002p0f, 0x1.000002p0f, -1) == 0x1p-22f);
   CHECK(fminf(1, 2) == 1 && fmaxf(1, 2) == 2 && fdimf(5, 2) == 3 && copysignf(2, -1) == -2 && remainderf(5, 3) == -1);
   CHECK(fmodf(5.5f, -2) == 1.5f && powf(2, 10) == 1024 && atan2f(0, 0) == 0 && hypotf(6, 8) == 10);
@@ -80,5 +90,6 @@ int main(void) {
   exact_results();
   parts();
   floats();
+  neighbours();
   exit(failures);
 }

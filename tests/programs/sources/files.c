@@ -6,6 +6,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "check.h"
@@ -36,6 +38,31 @@ static void streams(void) {
   CHECK(fopen(path, "wx") == NULL && errno == EEXIST && fopen(path, "q") == NULL && errno == EINVAL);
   CHECK((file = tmpfile()) != NULL && fputs("text", file) >= 0 && fseek(file, 1, SEEK_SET) == 0 && fgetc(file) == 'e');
   CHECK(fclose(file) == 0);
+}
+
+static void other_files(void) {
+  char line[32];
+  fpos_t where;
+  FILE* file = fopen(path, "w");
+  CHECK(file != NULL && fputs("one\n", file) >= 0);
+  strcat(strcpy(other, path), ".c");
+  CHECK(freopen(other, "w", file) == file && fputs("two\nthree\n", file) >= 0);
+  CHECK(freopen(path, "r", file) == file && fgets(line, sizeof line, file) == line && strcmp(line, "one\n") == 0);
+  CHECK(freopen(other, "r", file) == file && fgets(line, sizeof line, file) == line && strcmp(line, "two\n") == 0);
+  CHECK(fgetpos(file, &where) == 0 && fgets(line, sizeof line, file) == line && strcmp(line, "three\n") == 0);
+  CHECK(fsetpos(file, &where) == 0 && fgetc(file) == 't');
+  CHECK(freopen("/no/such/file", "r", file) == NULL && errno == ENOENT && fgetc(file) == EOF && errno == EBADF);
+  CHECK(remove(other) == 0);
+}
+
+static void what_is_known(void) {
+  struct stat known;
+  const int file = open(path, O_RDWR | O_TRUNC);
+  CHECK(write(file, "12345", 5) == 5 && fstat(file, &known) == 0 && known.st_size == 5 && S_ISREG(known.st_mode));
+  CHECK(close(file) == 0 && stat(path, &known) == 0 && known.st_size == 5 && (known.st_mode & S_IRUSR) != 0);
+  CHECK(known.st_nlink == 1 && labs((long)time(NULL) - known.st_mtime) < 1000 && lstat(path, &known) == 0 && known.st_size == 5);
+  CHECK(stat("/", &known) == 0 && S_ISDIR(known.st_mode) && stat("/no/such/file", &known) == -1 && errno == ENOENT);
+  CHECK(fstat(file, &known) == -1 && errno == EBADF);
 }
 
 static void numbers(void) {
@@ -80,6 +107,9 @@ int main(uint64_t id, uint64_t argp) {
   mfc_read_tag_status_all();
   streams();
   numbers();
+  other_files();
+  what_is_known();
+  CHECK(remove(path) == 0);
   scanning();
   exit(failures);
 }

@@ -4,6 +4,8 @@
 #include <errno.h>
 #include <libmisc.h>
 #include <limits.h>
+#include <stdarg.h>
+#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
@@ -100,6 +102,31 @@ static void heap(void) {
   free_align(aligned);
 }
 
+static char* written(const char* format, ...) {
+  char* text;
+  va_list list;
+  va_start(list, format);
+  CHECK(vasprintf(&text, format, list) >= 0);
+  va_end(list);
+  return text;
+}
+
+static void texts_of_any_length(void) {
+  char* text;
+  wchar_t wide[8];
+  CHECK(asprintf(&text, "%d-%s", 12, "ab") == 5 && strcmp(text, "12-ab") == 0);
+  free(text);
+  text = written("%200s|%.1f", "x", 2.5);
+  CHECK(strlen(text) == 204 && strcmp(text + 199, "x|2.5") == 0);
+  free(text);
+  CHECK(asprintf(&text, "%300000d", 1) == 4096);
+  free(text);
+  text = written("%ls|%5ls|%.2ls|%lc", L"wide", L"ab", L"\x20AC", (unsigned)L'\xE9');
+  CHECK(strcmp(text, "wide|   ab||\xC3\xA9") == 0);
+  CHECK(sscanf("caf\xC3\xA9 x", "%ls", wide) == 1 && wide[2] == L'f' && wide[3] == 0xE9 && wide[4] == 0);
+  free(text);
+}
+
 static void other_names(void) {
   char text[] = "a,,b", copy[8], *rest = text;
   void* block = NULL;
@@ -156,6 +183,7 @@ int main(int argc, char** argv) {
   copies_of_new_memory();
   heap();
   other_names();
+  texts_of_any_length();
   output();
   printf("%d failures of %s\n", failures, "library.c");
   exit(failures);

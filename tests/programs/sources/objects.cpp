@@ -126,6 +126,7 @@ void headers_of_c_are_in_std() {
         std::lround(2.5f) == 3);
   CHECK(!std::isnan(two) && isfinite(three) && std::signbit(-two) && std::fpclassify(two) == FP_NORMAL &&
         std::isfinite(4));
+  CHECK(std::fma(two, three, 1.0f) == 7 && std::fma(2.0, 3.0, 1.0) == 7 && std::nextafter(two, 9.0f) > two);
   errno = 0;
   std::strtod("1e999", nullptr);
   CHECK(errno == ERANGE && INT_MAX == 0x7FFFFFFF && FLT_MAX > 1e38f);
@@ -142,9 +143,18 @@ void headers_of_c_are_in_std() {
   assert(failures == 0);
 }
 
+void vectors_are_true_lane_by_lane() {
+  const vec_int4 a = {0, 1, -1, 0}, b = {0, 0, 2, 3};
+  const vec_float4 c = {0.0f, -0.0f, 1.0f, 1e-30f};
+  const auto lanes = [](vec_int4 mask) { return spu_extract(spu_gather(mask), 0); };
+  CHECK(lanes(!a) == 0b1001 && lanes(!c) == 0b1100 && lanes(!!b) == 0b0011);
+  CHECK(lanes(a && b) == 0b0010 && lanes(a || b) == 0b0111 && lanes(a && c) == 0b0010);
+}
+
 }  // namespace
 
 int main() {
+  vectors_are_true_lane_by_lane();
   objects_are_on_the_heap_of_the_local_store();
   static_variables_are_made_once();
   headers_of_c_are_in_std();

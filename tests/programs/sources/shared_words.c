@@ -1,5 +1,6 @@
 /* libsync.h: each function by itself, on words of the lines at argp. */
-#include <libsync.h>
+#include <atomic_add.h>
+#include <mutex_lock.h>
 #include <stdint.h>
 #include <stdlib.h>
 

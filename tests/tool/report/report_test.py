@@ -232,7 +232,7 @@ class Page(WithBrowser):
     def test_bandwidth_is_what_the_commands_moved(self):
         numbers = self.text("bandwidth-numbers")
         self.assertIn("get 1.11 MB", numbers)  # 45 * (16384 + 8192) bytes
-        self.assertIn("put 184 KB", numbers)   # 45 * 4096 bytes
+        self.assertIn("put 184 kB", numbers)   # 45 * 4096 bytes
         self.assertIn("1.29 MB moved", self.text("summary"))
         duration = self.run_script("const {trace} = softcellReport; return (trace.end - trace.begin) / 1e9")
         self.assertIn(f"at {45 * (16384 + 8192) / duration / 1e6:.0f} MB/s", numbers)  # the same MB
@@ -247,7 +247,7 @@ class Page(WithBrowser):
         whole = stores[0].find_element(By.CLASS_NAME, "map")
         bss = next(part for part in whole.find_elements(By.TAG_NAME, "span") if part.get_attribute("title").startswith("bss"))
         self.assertAlmostEqual(bss.rect["width"] / whole.rect["width"], 40960 / (256 * 1024), delta=0.005)
-        for part in ("text", "6 100", "stack", "4 096", "1 360 of 4 096", "weights", "free", "of 256 KB taken, budget 96 KB"):
+        for part in ("text", "6 100", "stack", "4 096", "1 360 of 4 096", "weights", "free", "of 256 KiB taken, budget 96 KiB"):
             self.assertIn(part, stores[0].text)
         self.assertIn("not measured", stores[1].text)
 

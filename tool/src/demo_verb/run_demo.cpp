@@ -120,6 +120,9 @@ void check_pictures(const DemoOptions& options) {
                       options.supersample, options.size.width, options.size.height, kMaxDrawn));
     }
   }
+  const char* const drawn = options.statistics ? "--statistics" : options.turntable ? "--turntable" : nullptr;
+  if (drawn != nullptr && !options.out && !options.video)
+    throw UsageError(fmt::format("{} shows in pictures only: give --out or --video too", drawn));
   if (!options.video) return;
   const std::optional<render::VideoFormat> format = render::video_format(*options.video);
   if (!format) {

@@ -58,7 +58,7 @@ void compare_buffers(const KernelOutcome::Contents& first, const KernelOutcome::
 KernelOutcome outcome(const KernelRun& run, const KernelBuffers& buffers) {
   KernelOutcome result;
   for (const SpeRun& spe : run.spes) {
-    result.ends.push_back(spe.result.fault ? place_and_rule(*spe.result.fault) : describe_end(spe.result));
+    result.ends.push_back(spe.result.fault ? place_and_rule(*spe.result.fault) : describe_end(spe));
   }
   for (const ls_sim::Finding& finding : run.findings)
     result.findings.push_back(place_and_rule(finding.fault));

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <atomic>
 #include <chrono>
 #include <thread>
 
@@ -31,22 +32,30 @@ class Interrupter {
  public:
   Interrupter(ls_sim::SpeGroup& group, const std::function<bool()>& wanted) {
     if (!wanted) return;
-    thread_ = std::jthread([&group, &wanted](const std::stop_token& end) {
+    thread_ = std::jthread([this, &group, &wanted](const std::stop_token& end) {
       while (!end.stop_requested()) {
-        if (wanted()) return group.stop_runs();
+        if (wanted()) {
+          has_ended_runs_ = true;
+          return group.stop_runs();
+        }
         std::this_thread::sleep_for(kPeriod);
       }
     });
   }
 
+  bool has_ended_runs() const { return has_ended_runs_; }
+
  private:
   static constexpr std::chrono::milliseconds kPeriod{5};
+  std::atomic<bool> has_ended_runs_ = false;
   std::jthread thread_;
 };
 
 }  // namespace
 
-std::string describe_end(const ls_sim::RunResult& result) {
+std::string describe_end(const SpeRun& spe) {
+  const ls_sim::RunResult& result = spe.result;
+  if (spe.interrupted) return "interrupted";
   if (result.fault) return std::string(dma::name(result.fault->rule));
   if (result.ended_normally()) return fmt::format("status {}", result.status());
   return fmt::format("stop code 0x{:04X}", result.stop_code);
@@ -60,7 +69,7 @@ std::vector<std::string> KernelRun::failures(const ls_sim::KernelImage& image) c
       sentences.push_back(result.fault->message());
     } else if (!result.ended_normally() || result.status() != 0) {
       sentences.push_back(
-          fmt::format("SPE {}, kernel {}: ended with {}", spe, image.name, describe_end(result)));
+          fmt::format("SPE {}, kernel {}: ended with {}", spe, image.name, describe_end(spes[spe])));
     }
   }
   return sentences;
@@ -83,6 +92,8 @@ KernelRun run_kernel(dma::AddressSpace& memory, const ls_sim::KernelImage& image
   for (int spe = 0; spe < task.spes; ++spe) {
     SpeRun& one = run.spes.emplace_back();
     one.result = group.wait(spe);
+    one.interrupted = interrupter.has_ended_runs() && one.result.fault &&
+                      one.result.fault->rule == dma::Rule::kDeadlineExceeded;
     one.out_mbox = group.problem_state(spe).read_out_mbox();
     one.out_intr_mbox = group.problem_state(spe).read_out_intr_mbox();
     one.statistics = group.statistics(spe);

@@ -35,10 +35,11 @@ struct SpeRun {
   ls_sim::RunResult result;
   std::optional<std::uint32_t> out_mbox, out_intr_mbox;
   ls_sim::SpeStatistics statistics;
+  bool interrupted = false;  ///< RunSettings::interrupted has ended it
 };
 
-/// "status 0", "stop code 0x3FFF", or the name of the rule that was broken.
-std::string describe_end(const ls_sim::RunResult& result);
+/// "status 0", "stop code 0x3FFF", "interrupted", or the name of the rule that was broken.
+std::string describe_end(const SpeRun& spe);
 
 struct KernelRun {
   std::vector<SpeRun> spes;

@@ -156,7 +156,12 @@ ScratchFolder::~ScratchFolder() {
 std::string ScratchFolder::text(const std::string& name) const { return text_of(path_ / name); }
 
 std::vector<std::string> ScratchFolder::texts(const std::string& extension) const {
-  std::set<std::filesystem::path> files;
+  // Of numbers, the shorter one is the smaller one.
+  const auto comes_before = [](const std::filesystem::path& a, const std::filesystem::path& b) {
+    const std::size_t a_length = a.native().size(), b_length = b.native().size();
+    return a_length != b_length ? a_length < b_length : a < b;
+  };
+  std::set<std::filesystem::path, decltype(comes_before)> files;
   for (const auto& file : std::filesystem::directory_iterator(path_)) files.insert(file.path());
   std::vector<std::string> texts;
   for (const std::filesystem::path& file : files)

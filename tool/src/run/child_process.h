@@ -44,7 +44,7 @@ class ScratchFolder {
   const std::filesystem::path& path() const { return path_; }
   /// The text of a file in the folder; empty if there is none.
   std::string text(const std::string& name) const;
-  /// The texts of the files in the folder with this ending (".json"), sorted by the files' names.
+  /// The texts of the files in the folder with this ending (".json"), sorted by the numbers that the files' names are.
   std::vector<std::string> texts(const std::string& extension) const;
 
  private:

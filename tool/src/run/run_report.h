@@ -18,7 +18,7 @@ struct ProgramRun {
   std::vector<std::string> unsaid_findings;
   nlohmann::json report;      ///< of all its processes together; null: no process has made an SPE context
   std::size_t processes = 0;  ///< of the program, that have made SPE contexts
-  std::string trace = {};     ///< empty: none is wanted, or the program has written none
+  std::vector<std::string> traces = {};  ///< of those processes that have written one, if they are wanted
 
   bool has_findings() const;
   /// "ended with status 0"

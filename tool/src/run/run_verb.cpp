@@ -80,17 +80,17 @@ struct Output {
 ProgramRun run_once(const RunOptions& options, const InterruptGuard& guard, KeptInput* input = nullptr) {
   SC_ASSERT(!options.words.empty(), "a run of no program under {}", options.dma);
   const ScratchFolder folder;
-  const std::string output = "output", trace = "trace";
+  const std::string output = "output";
   auto variables = variables_of(options);
   variables["SOFTCELL_REPORT"] = folder.path() / "%p.json";
   // softcell writes the user's file itself, so that one that cannot be written is refused before the run.
-  variables["SOFTCELL_TRACE"] = options.trace ? folder.path() / trace : std::filesystem::path();
+  variables["SOFTCELL_TRACE"] = options.trace ? folder.path() / "%p.trace" : std::filesystem::path();
   const ChildEnd end = input == nullptr
                            ? run_child(options.words, variables, guard, Interrupts::kOfTheProgram)
                            : run_child(options.words, variables, guard, Interrupts::kOfTheProgramAndOurs,
                                        folder.path() / output, input->begin_run());
   ProgramRun run = program_run(end, folder.text(output), folder.texts(".json"));
-  run.trace = folder.text(trace);
+  run.traces = folder.texts(".trace");
   return run;
 }
 
@@ -101,22 +101,73 @@ nlohmann::ordered_json document(const RunOptions& options, const ProgramRun& run
           {"report", run.report}};
 }
 
+/// "t.json" of the first process with a trace, "t.2.json" of the second.
+std::filesystem::path file_of_trace(const std::filesystem::path& file, std::size_t number) {
+  if (number == 1) return file;
+  std::filesystem::path other = file;
+  other.replace_extension(fmt::format(".{}{}", number, file.extension().string()));
+  return other;
+}
+
+/// A device, a pipe and standard output take one trace.
+bool takes_all_traces(const std::filesystem::path& file) {
+  std::error_code ignored;
+  const auto status = std::filesystem::status(file, ignored);
+  return file != kStandardOutput && (!exists(status) || is_regular_file(status));
+}
+
+/// Says which process each trace is of.
+void say_whose_traces(const std::filesystem::path& file, const ProgramRun& run) {
+  const std::size_t traces = run.traces.size();
+  if (traces < run.processes)
+    fmt::print(stderr, "softcell: {} of {} processes {} ended before {} wrote a trace\n",
+               run.processes - traces, run.processes, run.processes - traces == 1 ? "has" : "have",
+               run.processes - traces == 1 ? "it" : "they");
+  if (traces < 2) return;
+  if (!takes_all_traces(file)) {
+    fmt::print(stderr,
+               "softcell: {} has the trace of the first of {} processes; give --trace a file, and each has "
+               "its own\n",
+               shown_name(file), traces);
+    return;
+  }
+  const auto name = [&](std::size_t number) { return file_of_trace(file, number).string(); };
+  fmt::print(stderr, "softcell: {} processes have traces: '{}', '{}'{}\n", traces, name(1), name(2),
+             traces == 2 ? "" : fmt::format(" to '{}'", name(traces)));
+}
+
+/// Writes the traces of all processes but the first, each into a file of its own beside that of the first.
+/// @throws UsageError  one of them would replace another file of the run.
+void write_other_traces(const RunOptions& options, const ProgramRun& run) {
+  if (!takes_all_traces(*options.trace)) return;
+  base::WholeFiles files;
+  for (std::size_t number = 2; number <= run.traces.size(); ++number) {
+    const auto file = file_of_trace(*options.trace, number);
+    check_kept({{"--json", options.json}, {"the program", options.words.front()}},
+               {{fmt::format("the trace of process {}", number), file}});
+    files.open(file).write(run.traces[number - 1]);
+  }
+  files.commit();
+}
+
 int run_one(const RunOptions& options, const InterruptGuard& guard, Output& json, Output& trace) {
   const ProgramRun run = run_once(options, guard);
   for (const std::string& finding : run.unsaid_findings)
     fmt::print(stderr, "softcell: finding: {}\n", finding);
   fmt::print(stderr, "softcell: {} {}; {}\n", options.words.front(), run.ending(), run.summary());
-  const bool lacks_trace = trace.file != nullptr && run.trace.empty();
-  if (trace.file != nullptr && !lacks_trace) {
-    trace.file->write(run.trace);
+  const bool lacks_trace = trace.file != nullptr && run.traces.empty();
+  const bool has_trace = trace.file != nullptr && !lacks_trace;
+  if (has_trace) {
+    trace.file->write(run.traces.front());
     trace.file->finish();
   }
   if (json.file != nullptr) write_json(*json.file, document(options, run));
   json.files.commit();
-  if (!lacks_trace) trace.files.commit();
-  if (trace.file != nullptr && !lacks_trace && run.processes > 1)
-    fmt::print(stderr, "softcell: '{}' has the trace of the last of {} processes\n", options.trace->string(),
-               run.processes);
+  if (has_trace) {
+    trace.files.commit();
+    write_other_traces(options, run);
+    say_whose_traces(*options.trace, run);
+  }
   const int status = run.exit_status();
   if (!lacks_trace || status != 0) return status;
   fmt::print(

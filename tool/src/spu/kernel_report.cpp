@@ -86,7 +86,7 @@ void print_spes(const KernelRun& run) {
   for (std::size_t number = 0; number < run.spes.size(); ++number) {
     const ls_sim::SpeStatistics& s = run.spes[number].statistics;
     fmt::print("{:<4} {:<22} {:>9.3f} {:>9} {:>11} {:>6.1f} {:>6} {:>6} {:>6} {:>9.3f} {:>6}\n", number,
-               describe_end(run.spes[number].result), milliseconds(s.busy), s.dma.commands(), s.dma.bytes(),
+               describe_end(run.spes[number]), milliseconds(s.busy), s.dma.commands(), s.dma.bytes(),
                s.dma.mean_queue_occupancy(), s.dma.highest_queue_occupancy, s.dma.queue_full_stalls,
                s.channel_waits, milliseconds(s.channel_waiting), s.stack_high_water);
   }

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <deque>
 #include <filesystem>
+#include <initializer_list>
 #include <optional>
 #include <string_view>
 
@@ -54,11 +55,16 @@ class WholeFile {
   static std::filesystem::path behind_links(std::filesystem::path path);
 
  private:
+  static constexpr std::size_t kNoName = static_cast<std::size_t>(-1);
+
   /// @param replaced  the status of the file that is replaced, whose permissions the new one gets; it may not
   ///                  exist.
   void open_temporary(const std::filesystem::file_status& replaced);
   void open_in_place();
   void discard();
+  /// The name is known to remove_temporary_files_at() until it is forgotten.
+  void remember_temporary();
+  void forget_temporary();
   [[noreturn]] void fail(int error);
 
   std::filesystem::path path_;       ///< as passed by the caller
@@ -66,9 +72,14 @@ class WholeFile {
   std::filesystem::path temporary_;  ///< empty: none, because the file is written in place
   std::optional<mode_t> kept_mode_;  ///< the permissions of the file that is replaced
   std::FILE* file_ = nullptr;        ///< null: finished, or a device's or pipe's before the first byte
+  std::size_t name_for_signals_ = kNoName;
   bool finished_ = false;
   bool settled_ = false;  ///< committed, or discarded
 };
+
+/// Has these signals remove the temporary files of this process before they end it, as they do by default; a signal that is ignored stays
+/// so. It is for a command to call, when it starts: signals belong to the program. More than 64 files that are open at once are left.
+void remove_temporary_files_at(std::initializer_list<int> signals);
 
 /// Several atomic files that are committed together: none appears before all are written. Without commit(),
 /// none appears.

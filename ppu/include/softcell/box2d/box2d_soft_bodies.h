@@ -66,7 +66,7 @@ struct SoftRayHit2d {
 /// infinite, begin_step() throws std::runtime_error.
 ///
 /// Within a step of Box2D, for example in a contact listener, call const functions only: like Box2D's own, the others need a world that is
-/// not locked. b2World::ShiftOrigin() does not move soft bodies: call translate() to move each of them by as much.
+/// not locked. b2World::ShiftOrigin() does not move soft bodies: call shift_origin() in its place.
 class Box2dSoftBodies {
  public:
   /// With ContactMethod::kSpheres a particle moves at most this many cells in one step; faster particles are slowed down, which takes momentum from
@@ -177,6 +177,11 @@ class Box2dSoftBodies {
   /// for what SoftBodySolver::drop() says of rotations. Call it between steps. A step of 0 s begins nothing.
   /// @throws std::invalid_argument  the step is negative or not finite
   void begin_ahead(float step);
+
+  /// Moves the origin of the world with all that is in it, as b2World::ShiftOrigin() does, which this calls: soft bodies and the places in
+  /// the world that attachments hold them at move with it, and nothing is pushed, woken or torn.
+  /// @param new_origin  metres, in the coordinates until now   @throws std::invalid_argument  it is not finite.
+  void shift_origin(const Eigen::Vector2f& new_origin);
 
   /// Lets bodies at rest sleep, or never (std::nullopt, the default). Bodies that touch each other or are connected by
   /// joints fall asleep together, soft ones and rigid ones; each of them must be slow and allowed to sleep. A sleeping body

@@ -29,6 +29,7 @@
 #define ERANGE 34
 #define ENAMETOOLONG 36
 #define ENOSYS 38
+#define EOVERFLOW 75
 
 __BEGIN_DECLS
 extern int errno;

@@ -87,6 +87,7 @@ SC_FUNCTION_OF_2(fmin)
 SC_FUNCTION_OF_2(fmax)
 SC_FUNCTION_OF_2(fdim)
 SC_FUNCTION_OF_2(copysign)
+SC_FUNCTION_OF_2(nextafter)
 #undef SC_FUNCTION_OF_1
 #undef SC_FUNCTION_OF_2
 float ldexpf(float x_, int exponent);
@@ -100,6 +101,7 @@ double frexp(double x_, int* exponent);
 int ilogbf(float x_);
 int ilogb(double x_);
 float fmaf(float x_, float y_, float z_);
+double fma(double x_, double y_, double z_);
 long lrintf(float x_);
 long lrint(double x_);
 long long llrintf(float x_);

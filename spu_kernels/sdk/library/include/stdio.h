@@ -7,6 +7,7 @@
 #include <sys/cdefs.h>
 
 typedef struct softcell_file FILE;
+typedef long fpos_t;
 #define stdin ((FILE*)1)
 #define stdout ((FILE*)2)
 #define stderr ((FILE*)3)
@@ -30,6 +31,9 @@ int vprintf(const char* format, va_list arguments);
 int vfprintf(FILE* file, const char* format, va_list arguments);
 int vsprintf(char* to, const char* format, va_list arguments);
 int vsnprintf(char* to, size_t bytes, const char* format, va_list arguments);
+/// The text is memory of malloc(). @return  -1 when there is no room
+int asprintf(char** to, const char* format, ...) __attribute__((format(printf, 2, 3)));
+int vasprintf(char** to, const char* format, va_list arguments);
 /// As newlib has them for programs that print no floats: here they are the same functions.
 int iprintf(const char* format, ...) __asm__("printf") __attribute__((format(printf, 1, 2)));
 int fiprintf(FILE* file, const char* format, ...) __asm__("fprintf") __attribute__((format(printf, 2, 3)));
@@ -63,11 +67,17 @@ size_t fread(void* to, size_t bytes, size_t count, FILE* file);
 
 /// At most FOPEN_MAX streams of all SPEs together. @return  null is an error, and errno says which
 FILE* fopen(const char* path, const char* mode);
+/// The stream leads to another file; of stdin, stdout and stderr it is that of the process.
+FILE* freopen(const char* path, const char* mode, FILE* file);
 FILE* tmpfile(void);
+__attribute__((error("fdopen() is no call of the PPU side: open the file with fopen()"))) FILE* fdopen(
+    int file, const char* mode);
 int fclose(FILE* file);
 int fseek(FILE* file, long offset, int from);
 long ftell(FILE* file);
 void rewind(FILE* file);
+int fgetpos(FILE* file, fpos_t* to);
+int fsetpos(FILE* file, const fpos_t* from);
 int feof(FILE* file);
 int ferror(FILE* file);
 void clearerr(FILE* file);
