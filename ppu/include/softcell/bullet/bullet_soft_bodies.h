@@ -217,6 +217,7 @@ class BulletSoftBodies {
   std::size_t size() const;  ///< number of soft bodies
   /// The bodies in the order of add(). @throws std::out_of_range  there are not so many
   SoftBody<3>& operator[](std::size_t index);
+  /// The same.
   const SoftBody<3>& operator[](std::size_t index) const;
 
   /// A particle of one of the soft bodies.
