@@ -404,6 +404,9 @@ void SoftBody<kDimension>::set_position(std::size_t particle, const Vector& posi
 
 template <int kDimension>
 void SoftBody<kDimension>::pull(float step) {
+  if (!(step > 0) || !std::isfinite(step))
+    throw std::invalid_argument("soft body: a time step of " + base::shortest(step) +
+                                " s; expected is a positive number");
   std::ranges::copy(v_, pulled_.begin());
   matcher_->step_velocities(x_, pulled_, settings_.alpha_of_step(step), step,
                             settings_.damping_of_step(step));

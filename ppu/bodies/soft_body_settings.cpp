@@ -6,6 +6,7 @@
 #include "ppu/matching/regions.h"
 #include "ppu/matching/stiffness.h"
 #include "softcell/base/assert.h"
+#include "softcell/base/text.h"
 #include "softcell/soft_bodies/soft_body_settings.h"
 
 namespace softcell::ppu {
@@ -19,6 +20,16 @@ void require(bool in_range, const char* name, float value, const char* range) {
 }
 
 }  // namespace
+
+void validate(const SleepSettings& settings) {
+  const auto check = [](const char* name, float value) {
+    if (!(value >= 0))
+      throw std::invalid_argument(std::string("sleep settings: ") + name + " is " + base::shortest(value) +
+                                  "; expected is a number from 0 on");
+  };
+  check("speed", settings.speed);
+  check("seconds", settings.seconds);
+}
 
 void validate(const SoftBodySettings& s) {
   require(s.cell_size > 0, "cell_size", s.cell_size, "a length in metres above 0");

@@ -312,8 +312,12 @@ SoftBody<2>& Box2dSoftBodies::add(std::shared_ptr<const SoftBodyModel<2>> model,
   SC_ASSERT(model != nullptr && position.allFinite(), "a soft body {} a model, at ({}, {})",
             model ? "with" : "without", position.x(), position.y());
   SC_ASSERT(!impl_->world.IsLocked(), "add() of body {} within a step of Box2D", impl_->bodies.size());
-  SC_ASSERT(drawn == nullptr || !drawn->outlines.empty(), "a skin of {} vertices has no outlines",
-            drawn->rest.size());
+  if (drawn != nullptr) {
+    validate(*drawn, model->lattice());
+    if (drawn->outlines.empty())
+      throw std::invalid_argument("a skin of " + std::to_string(drawn->rest.size()) +
+                                  " vertices has no outlines; with these a body touches");
+  }
   impl_->solve.drop();
   if (impl_->surfaces && drawn != nullptr) impl_->surfaces->draw(model, *drawn);
   return impl_->add(SoftBody<2>(std::move(model), position)).soft();
@@ -434,8 +438,7 @@ void Box2dSoftBodies::shift_origin(const Vector2f& new_origin) {
 }
 
 void Box2dSoftBodies::let_sleep(const std::optional<SleepSettings>& settings) {
-  SC_ASSERT(!settings || (settings->speed >= 0 && settings->seconds >= 0),
-            "bodies sleep that were slower than {} m/s for {} s", settings->speed, settings->seconds);
+  if (settings) validate(*settings);
   impl_->solve.drop();
   impl_->sleep = settings;
   if (settings) return;
@@ -444,9 +447,14 @@ void Box2dSoftBodies::let_sleep(const std::optional<SleepSettings>& settings) {
 }
 
 std::size_t Box2dSoftBodies::size() const { return impl_->bodies.size(); }
-SoftBody<2>& Box2dSoftBodies::operator[](std::size_t index) { return impl_->bodies.at(index)->soft(); }
+SoftBody<2>& Box2dSoftBodies::operator[](std::size_t index) {
+  return const_cast<SoftBody<2>&>(std::as_const(*this)[index]);
+}
 const SoftBody<2>& Box2dSoftBodies::operator[](std::size_t index) const {
-  return impl_->bodies.at(index)->soft();
+  if (index >= impl_->bodies.size())
+    throw std::out_of_range("soft body " + std::to_string(index) + " of a world of " +
+                            std::to_string(impl_->bodies.size()) + "; the first one is 0");
+  return impl_->bodies[index]->soft();
 }
 
 Box2dSoftBodies::Particle Box2dSoftBodies::particle_of(const b2Body& body) const {

@@ -3,6 +3,7 @@
 #include <BulletDynamics/Dynamics/btActionInterface.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -26,6 +27,7 @@
 #include "ppu/contacts/piece_sides.h"
 #include "ppu/surfaces/way_in_box.h"
 #include "softcell/base/assert.h"
+#include "softcell/base/text.h"
 
 namespace softcell::ppu {
 namespace {
@@ -410,13 +412,15 @@ std::vector<EndedAttachment> BulletSoftBodies::poll_ended_attachments() {
 }
 
 void BulletSoftBodies::begin_ahead(float step) {
-  SC_ASSERT(step > 0, "a substep of {} s", step);
+  if (!(step >= 0) || !std::isfinite(step))
+    throw std::invalid_argument("BulletSoftBodies: a substep of " + base::shortest(step) +
+                                " s; expected are 0 s or more");
+  if (step == 0) return;
   timed(impl_->times.solve, [&] { impl_->solve.begin(step); });
 }
 
 void BulletSoftBodies::let_sleep(const std::optional<SleepSettings>& settings) {
-  SC_ASSERT(!settings || (settings->speed >= 0 && settings->seconds >= 0),
-            "bodies sleep that were slower than {} m/s for {} s", settings->speed, settings->seconds);
+  if (settings) validate(*settings);
   impl_->sleep = settings;
 }
 
@@ -464,9 +468,14 @@ CrushedCellCount BulletSoftBodies::crushed_cells() const {
 SoftBodyTimes BulletSoftBodies::times() const { return impl_->times; }
 
 std::size_t BulletSoftBodies::size() const { return impl_->bodies.size(); }
-SoftBody<3>& BulletSoftBodies::operator[](std::size_t index) { return impl_->bodies.at(index)->soft(); }
+SoftBody<3>& BulletSoftBodies::operator[](std::size_t index) {
+  return const_cast<SoftBody<3>&>(std::as_const(*this)[index]);
+}
 const SoftBody<3>& BulletSoftBodies::operator[](std::size_t index) const {
-  return impl_->bodies.at(index)->soft();
+  if (index >= impl_->bodies.size())
+    throw std::out_of_range("soft body " + std::to_string(index) + " of a world of " +
+                            std::to_string(impl_->bodies.size()) + "; the first one is 0");
+  return impl_->bodies[index]->soft();
 }
 
 BulletSoftBodies::Particle BulletSoftBodies::particle_of(const btCollisionObject& object) {

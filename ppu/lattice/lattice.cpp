@@ -90,6 +90,7 @@ Lattice<kDimension> make_lattice(std::span<const GridIndex<kDimension>> cells, f
                                  const typename Lattice<kDimension>::Position& origin) {
   if (!(spacing > 0) || !std::isfinite(spacing))
     throw std::runtime_error("lattice spacing " + base::shortest(spacing) + " m: expected a positive number");
+  if (!origin.allFinite()) throw std::runtime_error("a lattice has an origin that is NaN or infinite");
   if (cells.empty()) throw std::runtime_error("a lattice needs at least one cell");
 
   Lattice<kDimension> lattice;

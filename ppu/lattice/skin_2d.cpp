@@ -4,11 +4,14 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <stdexcept>
+#include <string>
 
 #include "ppu/lattice/cell_curves.h"
 #include "ppu/lattice/cells_by_index.h"
 #include "ppu/lattice/skin_field.h"
 #include "softcell/base/assert.h"
+#include "softcell/base/text.h"
 
 namespace softcell::ppu {
 namespace {
@@ -195,7 +198,9 @@ class Mesher {
 namespace {
 
 SkinField field_of(const CellsByIndex& cells, float margin, const Outside2d& outside) {
-  SC_ASSERT(margin >= 0 && margin <= kMaxSkinMargin, "a margin of {} cells", margin);
+  if (!(margin >= 0 && margin <= kMaxSkinMargin))
+    throw std::invalid_argument("a skin with a margin of " + base::shortest(margin) +
+                                " cells; expected are 0 to " + base::shortest(kMaxSkinMargin));
   return outside ? SkinField::of_shape(cells, margin, outside) : SkinField::of_cells(cells, margin);
 }
 
@@ -206,6 +211,23 @@ std::unique_ptr<SkinMap> map_of(const Lattice<2>& lattice, const Outside2d& outs
 }
 
 }  // namespace
+
+void validate(const Skin2d& skin, const Lattice<2>& lattice) {
+  const auto refuse = [&](const std::string& what, const std::string& of_lattice) {
+    throw std::invalid_argument("a skin was made for another lattice: it has " + what +
+                                ", and the lattice has " + of_lattice);
+  };
+  if (skin.spacing != lattice.spacing)
+    refuse("cells of " + base::shortest(skin.spacing) + " m",
+           "cells of " + base::shortest(lattice.spacing) + " m");
+  for (const std::uint32_t cell : skin.vertex_cells)
+    if (cell >= lattice.cells.size())
+      refuse("a cell of number " + std::to_string(cell), std::to_string(lattice.cells.size()) + " cells");
+  for (const Pull2d& pull : skin.pulls)
+    if (pull.particle >= lattice.particles.size())
+      refuse("a particle of number " + std::to_string(pull.particle),
+             std::to_string(lattice.particles.size()) + " particles");
+}
 
 Skin2d make_skin_2d(const Lattice<2>& lattice, float margin, const Outside2d& outside) {
   const CellsByIndex cells(lattice);

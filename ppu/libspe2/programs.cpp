@@ -120,7 +120,7 @@ std::string program_name(const std::filesystem::path& file) {
   return name;
 }
 
-/// The file of the checked flavour: saxpy.checked.spu.elf beside saxpy.spu.elf.
+/// The file of the checked image: saxpy.checked.spu.elf beside saxpy.spu.elf.
 std::filesystem::path checked_file(const std::filesystem::path& file) {
   const std::string name = file.filename();
   const std::string stem = program_name(file);
@@ -162,7 +162,7 @@ std::shared_ptr<const KernelImage> program_in_memory(std::string_view name, cons
       checked_elf != nullptr ? whole_file_at(checked_elf) : ls_sim::image_section(file, ".softcell.checked");
   if (checked.empty()) {
     throw std::runtime_error("SPE program " + called +
-                             " has no checked flavour, and SOFTCELL_CHECKED asks for it; build it with "
+                             " has no checked image, and SOFTCELL_CHECKED asks for it; build it with "
                              "softcell-spu-gcc or softcell_add_spu_kernel");
   }
   return std::make_shared<const KernelImage>(ls_sim::load_image(called, checked));

@@ -15,6 +15,7 @@
 #include "ppu/surfaces/triangle_distance.h"
 #include "ppu/surfaces/way_in_box.h"
 #include "softcell/base/assert.h"
+#include "softcell/base/text.h"
 #include "softcell/soft_bodies/skinned_mesh.h"
 
 namespace softcell::ppu {
@@ -144,6 +145,7 @@ std::vector<FaceOf<3>> faces_of(const SoftBody<3>& body) {
 }
 
 std::vector<FaceOf<2>> faces_of(const SoftBody<2>& body, const Skin2d& drawn) {
+  validate(drawn, body.model().lattice());
   std::vector<Vector2f> positions(drawn.rest.size()), slopes(drawn.rest.size());
   deform(drawn, body.positions(), positions, slopes);
   std::vector<FaceOf<2>> faces;
@@ -343,7 +345,10 @@ template <int kDimension>
 std::optional<SurfaceHit<kDimension>> SurfaceQuery<kDimension>::cast_sphere(const Vector& from,
                                                                             const Vector& to,
                                                                             float radius) const {
-  SC_ASSERT(from.allFinite() && to.allFinite() && radius > 0, "a sphere of {} m", radius);
+  if (!(radius > 0) || !std::isfinite(radius))
+    throw std::invalid_argument("cast_sphere() of a sphere of " + base::shortest(radius) +
+                                " m; expected is a positive radius");
+  SC_ASSERT(from.allFinite() && to.allFinite(), "a sphere of {} m moves from or to infinity", radius);
   const Vector along = to - from;
   const float length = along.norm(), near = 1e-4f * radius;
   const float least_step = 1e-3f * radius;  // for a sphere that moves along a surface

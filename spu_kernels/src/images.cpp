@@ -67,7 +67,7 @@ std::span<const std::byte> image_file(std::string_view name, bool checked) {
   const ImageFile& file = files_of(name);
   if (checked && file.checked_elf.empty()) {
     throw std::runtime_error("kernel " + std::string(name) +
-                             " has no checked flavour: it would not fit in a local store");
+                             " has no checked image: it would not fit in a local store");
   }
   return checked ? file.checked_elf : file.elf;
 }

@@ -57,7 +57,7 @@ ls_sim::KernelImage load_kernel_file(const std::filesystem::path& file, bool che
     if (checked) {
       const auto flavour = ls_sim::image_section(bytes, kCheckedSection);
       if (flavour.empty())
-        throw std::runtime_error("it holds no checked flavour; softcell-spu-gcc makes files that do");
+        throw std::runtime_error("it holds no checked image; softcell-spu-gcc makes files that do");
       return ls_sim::load_image(name, flavour);
     }
     return ls_sim::is_spu_program(bytes) ? ls_sim::load_spu_program(name, bytes)

@@ -118,6 +118,10 @@ TEST_F(ChangeScene, RefusesWhatIsNoModelAndChangesNothing) {
   const std::shared_ptr<const SceneDocument> document = now.document;
   EXPECT_NE(refusal([&] { add_file(now, folder_ / "none.glb", {}); }).find("there is no mesh file"),
             std::string::npos);
+  std::filesystem::create_directory(folder_ / "models");
+  EXPECT_NE(
+      refusal([&] { add_file(now, folder_ / "models", {}); }).find("is a folder; expected is a mesh file"),
+      std::string::npos);
   EXPECT_NE(refusal([&] { add_file(now, write("bad.ply", "ply\nrubbish"), {}); }), "(accepted)");
   EXPECT_NE(refusal([&] { add_file(now, picture(), {}); }), "(accepted)") << "a picture is no model";
   EXPECT_EQ(now.soft_bodies.size(), scene.soft_bodies.size());

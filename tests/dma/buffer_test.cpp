@@ -57,7 +57,13 @@ TEST(Buffer, KnowsTheElementWidthOfNumbersOnly) {
 TEST(Buffer, RefusesWhatDoesNotFit) {
   AddressSpace space;
   EXPECT_THROW(Buffer<Record>(space, "large", kMainMemoryBytes / sizeof(Record) + 1), std::runtime_error);
-  EXPECT_THROW(Buffer<Record>(space, "overflowing", ~std::size_t{0} / 8), std::runtime_error);
+  try {
+    Buffer<float>(space, "x", std::size_t{1} << 62);
+    FAIL() << "its bytes are no number of 64 bits";
+  } catch (const std::runtime_error& error) {
+    EXPECT_STREQ(error.what(),
+                 "buffer 'x' of 4611686018427387904 elements of 4 bytes: no memory is so large");
+  }
   EXPECT_THROW(Buffer<Record>(space, "empty", 0), std::invalid_argument);
 }
 

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "soft_body_2d_scenes.h"
+#include "softcell/soft_bodies/skin_2d.h"
 #include "softcell/soft_bodies/state_hash.h"
 
 namespace softcell::ppu {
@@ -235,6 +236,33 @@ TEST_P(Box2dCoupling, RefusesWhatItIsNotGiven) {
   EXPECT_THROW(world.soft.remove(body), std::invalid_argument);
   EXPECT_THROW(rectangle_model({1, 1}, rubber(), 0), std::runtime_error);
   EXPECT_THROW(rectangle_model({1, 1}, {.cell_size = 0}), std::runtime_error);
+}
+
+TEST_P(Box2dCoupling, RefusesTheSkinOfAnotherModel) {
+  World2d world(9.81f, GetParam());
+  const auto model = rectangle_model({2, 2}, rubber());
+  const Skin2d of_larger = make_skin_2d(rectangle_model({6, 3}, rubber())->lattice(), 0.5f);
+  const Skin2d without_outlines =
+      make_cover_2d(model->lattice(), [](const Eigen::Vector2i&) { return false; });
+  EXPECT_THROW(world.soft.add(model, {0, 0}, &of_larger), std::invalid_argument);
+  EXPECT_THROW(world.soft.add(model, {0, 0}, &without_outlines), std::invalid_argument);
+  EXPECT_EQ(world.soft.size(), 0u);
+}
+
+TEST_P(Box2dCoupling, RefusesNumbersOutOfTheirRange) {
+  World2d world(9.81f, GetParam());
+  world.soft.add(rectangle_model({1, 1}, rubber()), {0, 0});
+  try {
+    static_cast<void>(world.soft[9]);
+    FAIL() << "there is one body";
+  } catch (const std::out_of_range& error) {
+    EXPECT_STREQ(error.what(), "soft body 9 of a world of 1; the first one is 0");
+  }
+  for (const float wrong : {-1.0f, std::nanf("")}) {
+    EXPECT_THROW(world.soft.let_sleep(SleepSettings{.speed = wrong}), std::invalid_argument);
+    EXPECT_THROW(world.soft.let_sleep(SleepSettings{.seconds = wrong}), std::invalid_argument);
+    EXPECT_THROW(world.soft.begin_ahead(wrong), std::invalid_argument);
+  }
 }
 
 TEST_P(Box2dCoupling, AStepOfNoTimeChangesNothing) {

@@ -530,6 +530,24 @@ TEST(BulletSoftBodies, CanBeRemovedOneByOne) {
   EXPECT_NEAR(b.bounds().low.y(), model->contact_radius(), 0.01f) << "what held it is gone";
 }
 
+TEST(BulletSoftBodies, RefuseNumbersOutOfTheirRange) {
+  World world;
+  SoftBody<3>& body = world.soft.add(block_model({1, 1, 1}, stiff(0.2f)), {0, 0, 0});
+  EXPECT_EQ(&world.soft[0], &body);
+  try {
+    static_cast<void>(world.soft[9]);
+    FAIL() << "there is one body";
+  } catch (const std::out_of_range& error) {
+    EXPECT_STREQ(error.what(), "soft body 9 of a world of 1; the first one is 0");
+  }
+  for (const float wrong : {-1.0f, NAN}) {
+    EXPECT_THROW(world.soft.let_sleep(SleepSettings{.speed = wrong}), std::invalid_argument);
+    EXPECT_THROW(world.soft.let_sleep(SleepSettings{.seconds = wrong}), std::invalid_argument);
+    EXPECT_THROW(world.soft.begin_ahead(wrong), std::invalid_argument);
+  }
+  EXPECT_NO_THROW(world.soft.begin_ahead(0)) << "it begins nothing";
+}
+
 TEST(BulletSoftBodies, ANanIsReported) {
   World world;
   SoftBody<3>& body = world.soft.add(block_model({2, 2, 2}, stiff(0.2f)), {0, 0.05f, 0});

@@ -61,14 +61,6 @@ TEST(SoftBodyContractsDeathTest, TimeGoesForward) {
   SC_EXPECT_VIOLATES(body.advance_inner(0, {0, -9.81f, 0}), "advance_inner.*: a time step of 0 s\n");
   SC_EXPECT_VIOLATES(static_cast<void>(body.model().settings().alpha_of_step(-1)),
                      "alpha_of_step.*: a time step of -1 s\n");
-  World world;
-  SC_EXPECT_VIOLATES(world.soft.begin_ahead(0), "begin_ahead.*: a substep of 0 s\n");
-}
-
-TEST(SoftBodyContractsDeathTest, BodiesSleepThatWereSlowForAWhile) {
-  World world;
-  SC_EXPECT_VIOLATES(world.soft.let_sleep(SleepSettings{.speed = -1}),
-                     "let_sleep.*: bodies sleep that were slower than -1 m/s");
 }
 
 TEST(SoftBodyContractsDeathTest, AMeshWithABoxHasPositions) {

@@ -136,6 +136,8 @@ TEST(LatticeFromCells, TakesNegativeIndicesAndRefusesWhatPassesTheLimits) {
   EXPECT_THROW(lattice_from_cells(std::vector<Vector3i>{}, 1, {0, 0, 0}), std::runtime_error);
   for (const float spacing : {0.0f, -1.0f, NAN, INFINITY})
     EXPECT_THROW(lattice_from_cells(test::block_cells(1, 1, 1), spacing, {0, 0, 0}), std::runtime_error);
+  for (const float origin : {NAN, INFINITY})
+    EXPECT_THROW(lattice_from_cells(test::block_cells(1, 1, 1), 1, {0, origin, 0}), std::runtime_error);
 }
 
 TEST(ParticleMasses, AddUpToDensityTimesVolume) {

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <set>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -311,9 +312,30 @@ TEST(CellPoint2d, IsWhereItWasAskedFor) {
   }
 }
 
+TEST(Skin2d, IsOfOneLattice) {
+  const Lattice<2> large = rectangle(3, 2), small = rectangle(2, 2);
+  const Skin2d skin = make_skin_2d(large, 0.5f);
+  EXPECT_NO_THROW(validate(skin, large));
+  EXPECT_THROW(validate(skin, small), std::invalid_argument);
+  Lattice<2> finer = large;
+  finer.spacing *= 0.5f;
+  try {
+    validate(skin, finer);
+    FAIL() << "a skin of larger cells is accepted";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_NE(std::string(error.what()).find("a skin was made for another lattice: it has cells of "),
+              std::string::npos)
+        << error.what();
+  }
+}
+
 TEST(Skin2dContract, RefusesMarginsAndSizesThatDoNotFit) {
   const Lattice<2> lattice = rectangle(2, 2);
-  SC_EXPECT_VIOLATES(make_skin_2d(lattice, 0.6f), "a margin of 0.6 cells");
+  for (const float margin : {-0.1f, 0.6f, NAN}) {
+    EXPECT_THROW(make_skin_2d(lattice, margin), std::invalid_argument) << margin;
+    EXPECT_THROW(make_skin_parts_2d(lattice, margin, {}, std::vector<std::uint32_t>(4)),
+                 std::invalid_argument);
+  }
   SC_EXPECT_VIOLATES(make_skin_2d(Lattice<2>(), 0.5f), "has no cells");
   const Skin2d skin = make_skin_2d(lattice, 0.5f);
   std::vector<Vector2f> none;

@@ -24,6 +24,12 @@ SoftBodySettings rubber() {
   return {.cell_size = 0.2f, .half_width = 2, .density = 200, .alpha = 0.5f, .damping = 0.1f};
 }
 
+TEST(SoftBody, ATimeStepIsAboveZero) {
+  SoftBody<3> body(block_model({1, 1, 1}, rubber()));
+  for (const float step : {0.0f, -1.0f, NAN, INFINITY})
+    EXPECT_THROW(body.pull(step), std::invalid_argument) << step;
+}
+
 TEST(SoftBodySettings, RefuseValuesOutOfTheirRangeByName) {
   const auto sentence = [](const std::function<void(SoftBodySettings&)>& change) -> std::string {
     SoftBodySettings settings = rubber();

@@ -213,6 +213,21 @@ TEST(SpeSkinner, VerticesAreTheMeshsInTheOrderThatItStates) {
     ASSERT_EQ(texture[i], mesh.texture_coordinates[order.mesh_vertex[i]]) << i;
 }
 
+TEST(DrawOrder, ReordersWhatAMeshHas) {
+  const std::vector<std::uint32_t> vertices{2, 0, 2};
+  const DrawOrder order{.indices = {}, .mesh_vertex = vertices};
+  EXPECT_EQ(order.reorder(std::vector<int>{5, 6, 7}), (std::vector<int>{7, 5, 7}));
+  EXPECT_TRUE(order.reorder(std::vector<int>{}).empty()) << "a mesh without the attribute";
+  try {
+    order.reorder(std::vector<int>{5, 6});
+    FAIL() << "vertex 2 has no value";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_STREQ(
+        error.what(),
+        "an attribute of 2 values for a mesh that has a vertex 2; expected is one for each vertex, or none");
+  }
+}
+
 TEST(SpeSkinner, ShowsTheFrameBefore) {
   SpeRuntime spes({.spes = 1});
   SpeSkinner skinner(spes);

@@ -222,6 +222,19 @@ TEST(Command, HelpOfAVerbIsWhatItsHelpOptionPrints) {
   }
 }
 
+TEST(Command, HelpNamesTheRangesOfNumbers) {
+  const std::string of_3d = run_softcell("demo 3d --help").output,
+                    of_2d = run_softcell("demo 2d --help").output;
+  const auto joined = [](const std::string& text) {
+    return std::regex_replace(text, std::regex("\\s+"), " ");
+  };
+  for (const char* range :
+       {"longest side, 2 to 256", "many cells, 0.125 to 100", "video, 1 to 60", "pictures 1 to 8 times"})
+    EXPECT_NE(joined(of_3d).find(range), std::string::npos) << of_3d;
+  EXPECT_NE(joined(of_2d).find("painted, 2 to 256"), std::string::npos) << of_2d;
+  EXPECT_NE(joined(run_softcell("spu run --help").output).find("0.001 to 86400"), std::string::npos);
+}
+
 TEST(Command, ListsItsScenes) {
   const CommandResult run = run_softcell("scenes");
   EXPECT_EQ(run.status, 0);
@@ -1144,7 +1157,7 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"spu budget %s/cube.obj", 1,
                 "cube.obj is not an ELF file; a kernel is the file NAME.spu.elf"},
         Refusal{"spu timing skin --static", 1, "or --engine interpreter for softcell's own build"},
-        Refusal{"spu budget --checked job_loop", 1, "has no checked flavour"},
+        Refusal{"spu budget --checked job_loop", 1, "has no checked image"},
         Refusal{"report /dev/zero --out %s/r.html", 1, "/dev/zero: it is not a regular file"},
         Refusal{"demo 2d --headless --image %s/none.png", 1, "none.png"},
         Refusal{"demo 2d --headless --image /dev/zero", 1, "/dev/zero: it is not a regular file"},

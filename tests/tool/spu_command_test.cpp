@@ -363,13 +363,12 @@ TEST_F(SpuCommand, SaysHowMuchOfACheckedStackIsForTheChecks) {
   const CommandResult on_spu =
       run_softcell("spu budget --checked " SOFTCELL_SPU_PROGRAMS "/scale_stream.O2.elf");
   EXPECT_EQ(on_spu.status, 0) << on_spu.output;
-  EXPECT_EQ(on_spu.output.find("instrumented"), std::string::npos)
+  EXPECT_EQ(on_spu.output.find("checked image"), std::string::npos)
       << "a program built for the SPU has no such flavour: " << on_spu.output;
   const CommandResult budget =
       run_softcell("spu budget --checked " + kSaxpy + " --json " + (folder_ / "b.json"));
   ASSERT_EQ(budget.status, 0) << budget.output;
-  EXPECT_NE(budget.output.find(
-                "The stack of an instrumented flavour is 1024 bytes larger than the kernel declares"),
+  EXPECT_NE(budget.output.find("The stack of a checked image is 1024 bytes larger than the kernel declares"),
             std::string::npos)
       << budget.output;
   const auto row = read_json(folder_ / "b.json")[0];

@@ -10,7 +10,7 @@ says(0 "the SPU says: 3\nthe PPU says: 189" ${CMAKE_COMMAND} -E env SOFTCELL_DMA
 says(0 "the SPU says: 3\nthe PPU says: 189\n$" ${CMAKE_COMMAND} -E env SOFTCELL_CHECKED=1 ${lab}/lab)
 says(0 "" make -C ${lab} ${tools})  # nothing to do
 
-# The same with its wait left out: the checked flavour knows the line.
+# The same with its wait left out: the checked image knows the line.
 step("clean" make -C ${lab} clean)
 step("make without the wait" make -C ${lab} ${tools} "SPU_CFLAGS=-O2 -DFACTOR=3 -DFORGETS -Ispu")
 says(0 "finding: SPE 0, kernel scale, more_help.cpp:5: load-in-flight" ${CMAKE_COMMAND} -E env SOFTCELL_CHECKED=1 SOFTCELL_DMA=lazy ${lab}/lab)
@@ -44,7 +44,7 @@ says(0 "^$" sh -c "printf '#include \"spu/help.h\"\nint main(void) { return 7\\0
 says(1 "ended with status 7" ${BIN}/softcell spu run --checked ${lab}/of_input)
 file(WRITE ${lab}/unchecked.c "#ifdef SOFTCELL_CHECKED\nint nowhere(void);\n#else\nint nowhere(void) { return 0; }\n#endif\n"
   "int main(void) { return nowhere(); }\n")
-says(0 "undefined[^\n]*nowhere.*gets no checked flavour: it does not link\n$" ${gcc} ${lab}/unchecked.c -o ${lab}/unchecked)
+says(0 "undefined[^\n]*nowhere.*gets no checked image: it does not link\n$" ${gcc} ${lab}/unchecked.c -o ${lab}/unchecked)
 
 # What cannot be done is said in one sentence.
 file(WRITE ${lab}/code.s "il $3, 1\n")

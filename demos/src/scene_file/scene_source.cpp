@@ -116,6 +116,8 @@ SourceText SceneSource::text(const std::string& file, const Place& place) const 
 fs::path SceneSource::mesh(const std::string& file, const Place& place) const {
   fs::path path = locate(file, place);
   std::error_code error;
+  if (fs::is_directory(path, error))
+    throw SceneError(place, fmt::format("'{}' is a folder; expected is a mesh file", file));
   if (!fs::is_regular_file(path, error)) {
     const bool bunny = !folder_ && file.ends_with("bunny.obj");
     throw SceneError(place, fmt::format("there is no mesh file '{}'{}", file,
@@ -135,6 +137,8 @@ void SceneSource::add_files(std::span<const fs::path> files) const {
 fs::path SceneSource::picture(const std::string& file, const Place& place) const {
   fs::path path = locate(file, place);
   std::error_code error;
+  if (fs::is_directory(path, error))
+    throw SceneError(place, fmt::format("'{}' is a folder; expected is a picture file", file));
   if (!fs::is_regular_file(path, error))
     throw SceneError(place, fmt::format("there is no picture file '{}'", file));
   return path;

@@ -129,6 +129,7 @@ void* memalign(size_t alignment, size_t bytes) {
 void* aligned_alloc(size_t alignment, size_t bytes) { return memalign(alignment, bytes); }
 
 int posix_memalign(void** memory, size_t alignment, size_t bytes) {
+  if (alignment < sizeof(void*) || (alignment & (alignment - 1)) != 0) return EINVAL;
   void* const block = memalign(alignment, bytes);
   if (block == nullptr) return ENOMEM;
   *memory = block;

@@ -109,6 +109,18 @@ TEST(EdgeQuery, WithoutASkinIsTheEdgeThatTouches) {
   EXPECT_THROW(SurfaceQuery{body}, std::runtime_error);
 }
 
+TEST(EdgeQuery, RefusesTheSkinOfAnotherModelAndCirclesWithoutARadius) {
+  const SoftBody<2> body = square();
+  EXPECT_THROW(SurfaceQuery(body, make_skin_2d(model(9)->lattice(), 0.5f)), std::invalid_argument);
+  const SurfaceQuery query(body, drawn(body));
+  for (const float radius : {0.0f, -1.0f, std::nanf("")})
+    EXPECT_THROW(static_cast<void>(query.cast_sphere({0, 3}, {0, -3}, radius)), std::invalid_argument)
+        << radius;
+  const auto inside = query.cast_sphere({0, 0}, {0, -3}, 0.1f);
+  ASSERT_TRUE(inside);
+  EXPECT_EQ(inside->share, 0);
+}
+
 /// What is told of bodies that touch with their edges.
 class ToldIn2d : public testing::Test {
  protected:

@@ -36,8 +36,10 @@ static void numbers(void) {
   CHECK(strtol("  -0x1Fz", &end, 0) == -31 && *end == 'z' && atoi("42") == 42);
   CHECK(strtol("99999999999", NULL, 10) == LONG_MAX && strtoul("4294967295", NULL, 10) == ULONG_MAX);
   CHECK(strtol("-2147483648", NULL, 10) == LONG_MIN && strtoll("-12345678901", NULL, 10) == -12345678901ll);
-  CHECK(strtof("0.1", NULL) == 0.1f && strtof("-16777219", NULL) == -16777220 && strtof("16777217", NULL) == 16777216);
-  CHECK(strtof("1.1754944e-38", NULL) == 0x1p-126f && strtof("1e-39", NULL) == 0 && strtof("3.4028235e38", NULL) == 0x1.FFFFFEp127f);
+  CHECK(strtof("0.1", NULL) == 0.1f && strtof("-16777219", NULL) == -16777220 &&
+        strtof("16777217", NULL) == 16777216);
+  CHECK(strtof("1.1754944e-38", NULL) == 0x1p-126f && strtof("1e-39", NULL) == 0 &&
+        strtof("3.4028235e38", NULL) == 0x1.FFFFFEp127f);
   srand(5);
   for (int i = 0; i < 50; ++i) values[i] = rand() % 1000;
   qsort(values, 50, sizeof values[0], by_value);
@@ -66,7 +68,8 @@ static void copies_of_new_memory(void) {
   memmove(copy + 1, copy, 4 * sizeof list[0]);
   qsort(list, 4, sizeof list[0], by_value_of);
   list = realloc(list, 8 * sizeof list[0]);
-  CHECK(list[0].value == 1 && list[3].value == 4 && list[0].kind == 3 && copy[4].value == 1 && strcmp(copy[4].name, "short") == 0);
+  CHECK(list[0].value == 1 && list[3].value == 4 && list[0].kind == 3 && copy[4].value == 1 &&
+        strcmp(copy[4].name, "short") == 0);
   char* const untouched = realloc(malloc(100), 300);
   CHECK(untouched != NULL);
   free(untouched);
@@ -141,6 +144,7 @@ static void other_names(void) {
   CHECK(posix_memalign(&block, 64, 100) == 0 && ((uintptr_t)block & 63) == 0);
   free(block);
   CHECK(posix_memalign(&block, 16, 300000) == ENOMEM);
+  CHECK(posix_memalign(&block, 24, 100) == EINVAL && posix_memalign(&block, 0, 100) == EINVAL);
   block = aligned_alloc(32, 64);
   CHECK(((uintptr_t)block & 31) == 0);
   free(block);

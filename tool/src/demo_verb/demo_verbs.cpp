@@ -93,7 +93,7 @@ class DemoVerbs final : public Verb {
         ->type_name("FILE");
     accept_whole_number(
         d->add_option("--cells", demo_2d_.cells,
-                      "Lattice cells along the longest side of what is painted (default: 20)"),
+                      "Lattice cells along the longest side of what is painted, 2 to 256 (default: 20)"),
         2, ppu::kMaxLatticeCellsPerAxis)
         ->needs("--image")
         ->type_name("CELLS");
@@ -114,7 +114,7 @@ class DemoVerbs final : public Verb {
         demo.add_subcommand("3d", "Soft bodies in a Bullet world, stepped and skinned on six emulated SPEs");
     add_demo_options(*d, demo_3d_, "arena");
     d->add_option("--mesh", demo_3d_.model.mesh,
-                  "Put this glTF, OBJ, PLY or STL model into the scene (default: drop)")
+                  "Put this glTF, OBJ, PLY or STL model into the scene, which must take one (default: drop)")
         ->type_name("FILE");
     d->add_option("--up", up_, "The model's axis that points upwards (default: y)")
         ->needs("--mesh")
@@ -125,9 +125,10 @@ class DemoVerbs final : public Verb {
         ->needs("--mesh")
         ->type_name("METRES");
     CLI::Option* const cells =
-        accept_whole_number(d->add_option("--cells", demo_3d_.model.cells,
-                                          "Lattice cells along the model's longest side (default: 8)"),
-                            2, ppu::kMaxLatticeCellsPerAxis)
+        accept_whole_number(
+            d->add_option("--cells", demo_3d_.model.cells,
+                          "Lattice cells along the model's longest side, 2 to 256 (default: 8)"),
+            2, ppu::kMaxLatticeCellsPerAxis)
             ->needs("--mesh")
             ->type_name("CELLS");
     d->add_option("--cell", demo_3d_.model.cell,
@@ -136,8 +137,8 @@ class DemoVerbs final : public Verb {
         ->excludes(cells)
         ->type_name("LENGTH");
     d->add_option("--tessellate", demo_3d_.model.tessellation,
-                  "Halve edges of the model's triangles that are longer than so many cells (1: they follow "
-                  "the lattice)")
+                  "Halve edges of the model's triangles that are longer than so many cells, 0.125 to 100 (1: "
+                  "they follow the lattice)")
         ->needs("--mesh")
         ->type_name("CELLS");
     d->add_option("--view", view_3d_, "What is drawn of soft bodies (default: mesh)")
@@ -187,15 +188,15 @@ class DemoVerbs final : public Verb {
                  "needs ffmpeg); "
                  "of a run that is interrupted it has the frames so far")
         ->type_name("FILE");
-    accept_whole_number(
-        d.add_option("--fps", options.fps, "Frames a second of the video (default: 60, in a .gif 20)"), 1,
-        demos::FilmRate::kFramesPerSecond)
+    accept_whole_number(d.add_option("--fps", options.fps,
+                                     "Frames a second of the video, 1 to 60 (default: 60, in a .gif 20)"),
+                        1, demos::FilmRate::kFramesPerSecond)
         ->needs("--video")
         ->type_name("FPS");
     accept_whole_number(
         d.add_option(
             "--supersample", options.supersample,
-            "Draw pictures so many times as large and make them smaller, for finer edges (with --headless; "
+            "Draw pictures 1 to 8 times as large and make them smaller, for finer edges (with --headless; "
             "default: 1)"),
         1, kMaxSupersample)
         ->type_name("FACTOR");
@@ -216,7 +217,7 @@ class DemoVerbs final : public Verb {
                  "SPU has made; or reference, the PPU with Eigen")
         ->type_name("native|interpreter|reference");
     d.add_flag("--checked", options.checked,
-               "Run the instrumented flavour of the kernels; findings end with status 3");
+               "Run the checked images of the kernels; findings end with status 3");
     d.add_option("--record", options.record, "Record the events of each frame, for --replay")
         ->type_name("FILE");
     d.add_option(

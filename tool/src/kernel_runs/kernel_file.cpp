@@ -30,7 +30,7 @@ std::filesystem::path flavour_of(const std::filesystem::path& file, bool checked
       text.substr(0, text.size() - kSuffix.size()) + std::string(kCheckedSuffix);
   if (!std::filesystem::exists(neighbour)) {
     throw std::runtime_error(
-        "there is no checked flavour of " + text + ": " + neighbour.string() +
+        "there is no checked image of " + text + ": " + neighbour.string() +
         " does not exist; softcell_add_spu_kernel makes both, and softcell-spu-gcc a file with both");
   }
   return neighbour;

@@ -11,16 +11,16 @@
 
 namespace softcell::tool {
 
-/// The bytes by which the stack of an instrumented flavour is larger than its kernel declares, because the checks need them.
+/// The bytes by which the stack of a checked image is larger than its kernel declares, because the checks need them.
 inline constexpr std::uint32_t kCheckStackBytes = SOFTCELL_CHECKED_STACK_BYTES;
 
-/// kCheckStackBytes for an instrumented flavour, 0 for any other image.
+/// kCheckStackBytes for a checked image, 0 for any other image.
 inline std::uint32_t stack_for_checks(const ls_sim::KernelImage& image) {
   return image.checked && image.machine == ls_sim::Machine::kHost ? kCheckStackBytes : 0;
 }
 
 /// The names of all kernels of this project, sorted.
-/// @param checked  only kernels that have an instrumented flavour
+/// @param checked  only kernels that have a checked image
 std::vector<std::string> built_in_kernels(bool checked);
 
 using spu_kernels::load_kernel;
@@ -31,7 +31,7 @@ std::optional<std::filesystem::path> find_kernel_file(const std::string& image, 
 
 /// Loads a kernel by the path of its .spu.elf file, by the path of a program built for the SPU, or by name if it is a kernel of this
 /// project.
-/// @param checked  load its instrumented flavour: NAME.checked.spu.elf beside NAME.spu.elf. A program built for the SPU
+/// @param checked  load its checked image: NAME.checked.spu.elf beside NAME.spu.elf. A program built for the SPU
 ///                 needs none.
 /// @param machine  refuse an image for another machine.
 /// @throws std::runtime_error  one sentence: there is no such file or kernel, no such flavour, it is for another machine, or it cannot be

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "softcell/base/text.h"
+
 namespace softcell::tool {
 namespace {
 
@@ -75,13 +77,10 @@ void print_details(const ls_sim::Timing& timing, int spe) {
     fmt::print("{}\n", any ? "" : " nothing");
   }
   if (transfers.commands != 0) {
-    fmt::print(
-        "SPE {}: {} DMA commands, {} lines, {:.0f} cycles from issue to end on average; {} waits for tags, "
-        "{} for "
-        "the queue\n",
-        spe, transfers.commands, transfers.lines,
-        static_cast<double>(transfers.latency) / static_cast<double>(transfers.commands), transfers.tag_waits,
-        transfers.queue_waits);
+    fmt::print("SPE {}: {}, {}, {:.0f} cycles from issue to end on average; {} for tags, {} for the queue\n",
+               spe, base::counted(transfers.commands, "DMA command"), base::counted(transfers.lines, "line"),
+               static_cast<double>(transfers.latency) / static_cast<double>(transfers.commands),
+               base::counted(transfers.tag_waits, "wait"), transfers.queue_waits);
   }
 }
 

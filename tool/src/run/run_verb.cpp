@@ -245,7 +245,7 @@ class RunVerb final : public Verb {
     r->add_flag("--turns", options_.turns,
                 "SPEs run one at a time; whose turn it is follows from the seed of --dma random:SEED");
     r->add_flag("--checked", options_.checked,
-                "Take the instrumented flavours of the SPE programs and report every mistake in their loads "
+                "Take the checked images of the SPE programs and report every mistake in their loads "
                 "and stores");
     r->add_flag("--allocations", options_.allocations,
                 "Hold addresses of transfers against the blocks of the program's heap");

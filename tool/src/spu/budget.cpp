@@ -77,7 +77,7 @@ void print_table(const std::vector<BudgetRow>& rows) {
   }
   if (any_stack_for_checks)
     fmt::print(
-        "\nThe stack of an instrumented flavour is {} bytes larger than the kernel declares, for the checks; "
+        "\nThe stack of a checked image is {} bytes larger than the kernel declares, for the checks; "
         "its budget is the whole local store.\n",
         kCheckStackBytes);
 }

@@ -13,7 +13,7 @@ void KernelTaskOptions::add_to(CLI::App& verb) {
       ->required()
       ->type_name("KERNEL");
   verb.add_flag("--checked", checked_,
-                "Take the instrumented flavour, IMAGE's .checked.spu.elf: findings name file and line");
+                "Take the checked image, IMAGE's .checked.spu.elf: findings name file and line");
   verb.add_option(
           "--engine", engine_,
           "What runs it: native for images built for the host, interpreter for programs built for the SPU "
@@ -48,7 +48,7 @@ void KernelTaskOptions::add_to(CLI::App& verb) {
       ->type_name("WORD");
   verb.add_option("--in-mbox", in_mbox_, "Values waiting in each inbound mailbox, at most four")
       ->type_name("VALUE");
-  verb.add_option("--deadline", deadline_, "Seconds after which a run is stopped with a fault (default: 10)")
+  verb.add_option("--deadline", deadline_, "Seconds after which a run is stopped with a fault, 0.001 to 86400 (default: 10)")
       ->type_name("SECONDS");
 }
 

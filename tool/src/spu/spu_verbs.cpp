@@ -38,9 +38,8 @@ class SpuVerbs final : public Verb {
     b->add_option("KERNELS", budget_.kernels,
                   "Your kernels' .spu.elf files, or names of softcell's own (default: all of these)")
         ->type_name("KERNEL");
-    b->add_flag(
-        "--checked", budget_.checked,
-        "Show the instrumented flavours, whose stack has room for the checks beside the kernel's own");
+    b->add_flag("--checked", budget_.checked,
+                "Show the checked images, whose stack has room for the checks beside the kernel's own");
     b->add_flag("--functions", budget_.functions,
                 "Show also in which functions the cycles went on a PS3, of softcell's own kernels");
     add_json_option(*b, budget_.json, "the table");

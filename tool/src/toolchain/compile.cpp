@@ -136,7 +136,7 @@ void keep_standard_input(const Options& options, ScratchFolder& scratch) {
   std::ofstream(kept, std::ios::binary) << std::cin.rdbuf();
   const int file = open(kept.c_str(), O_RDONLY | O_CLOEXEC);
   if (file < 0 || dup2(file, STDIN_FILENO) < 0)
-    throw std::runtime_error("standard input cannot be kept for the checked flavour");
+    throw std::runtime_error("standard input cannot be kept for the checked image");
   close(file);
 }
 

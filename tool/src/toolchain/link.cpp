@@ -180,7 +180,7 @@ void link(const Words& files, const std::filesystem::path& output, const Options
                                       places, false, kNoBudget) == 0;
       why = links ? "it does not fit into a local store" : "it does not link";
     }
-    std::fprintf(stderr, "softcell-spu-ld: note: %s gets no checked flavour: %s\n", output.c_str(),
+    std::fprintf(stderr, "softcell-spu-ld: note: %s gets no checked image: %s\n", output.c_str(),
                  why.c_str());
   }
   const auto name = scratch.file("name");

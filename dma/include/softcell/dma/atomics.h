@@ -31,7 +31,7 @@ concept AtomicWord = std::integral<T> &&(sizeof(T) == 4 || sizeof(T) == 8);
 /// @source  [PowerPC, lwarx and stwcx.; CBEA, atomic commands] documented
 class Atomics {
  public:
-  /// @throws std::runtime_error  32 MFCs and Atomics use this address space already.
+  /// @throws std::runtime_error  Reservations::kMaxHolders MFCs, job chains and Atomics use this address space already.
   explicit Atomics(AddressSpace& space);
 
   /// lwarx, ldarx: reads the word and reserves its line. An earlier reservation of this object ends.

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <limits>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -36,10 +37,10 @@ class Buffer {
         (std::is_arithmetic_v<T> || std::is_enum_v<T>)) {
       options.element_bytes = sizeof(T);
     }
-    // A product that overflows is more than any memory holds; the largest number stands for it and is refused.
-    constexpr std::uint64_t kMost = std::numeric_limits<std::uint64_t>::max();
-    const std::uint64_t bytes = count > kMost / sizeof(T) ? kMost : count * sizeof(T);
-    ea_ = space.allocate(std::move(name), bytes, options);
+    if (count > std::numeric_limits<std::uint64_t>::max() / sizeof(T))
+      throw std::runtime_error("buffer '" + name + "' of " + std::to_string(count) + " elements of " +
+                               std::to_string(sizeof(T)) + " bytes: no memory is so large");
+    ea_ = space.allocate(std::move(name), count * sizeof(T), options);
     elements_ = {reinterpret_cast<T*>(space.mapping_at(ea_)->host), count};
   }
 

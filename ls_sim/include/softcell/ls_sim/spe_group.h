@@ -84,8 +84,9 @@ class ProblemState {
 /// @throws std::invalid_argument  (all functions with `spe`) the group has no such SPE.
 class SpeGroup {
  public:
-  /// Creates the SPEs and maps their local stores into `memory`, which must outlive the group.
-  /// @throws std::invalid_argument  options out of range.
+  /// Creates the SPEs and maps their local stores into `memory`, which must outlive the group. A memory has the SPEs of one group, job
+  /// system or SpeRuntime at a time.
+  /// @throws std::invalid_argument  options out of range, or the memory has SPEs already.
   /// @throws std::runtime_error  the host lacks AVX2 or FMA, or has no thread left.
   SpeGroup(dma::AddressSpace& memory, const SpeOptions& options);
 

@@ -3,7 +3,7 @@
 // docs/guide/timing.md explains the figures, docs/reference/timing.md the model.
 //
 //   Timing timing(2);
-//   SpeGroup spes(memory, {.spes = 2, .interleaving = Interleaving::kByTime, .timing = &timing});
+//   SpeGroup spes(memory, {.spes = 2, .interleaving = Interleaving::kByTime, .clock = Clock::kSimulated, .timing = &timing});
 //   ...
 //   const CycleCounts counts = timing.total(0);
 

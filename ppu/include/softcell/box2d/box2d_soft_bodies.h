@@ -93,8 +93,9 @@ class Box2dSoftBodies {
   /// assigned to it, its attachments end.
   /// @param drawn  how bodies of the model are drawn: their outlines touch. Null: as make_skin_2d() draws them. Only the skin passed
   ///               with the first body of a model counts, and none with ContactMethod::kSpheres. It need not outlive the call
+  /// @throws std::invalid_argument  as validate() of the skin and the model's lattice, or the skin has no outlines
   /// @throws std::runtime_error  with ContactMethod::kSpheres there would be more than 32,768 bodies
-  /// @pre the model is not null; the position is finite; the skin has outlines
+  /// @pre the model is not null; the position is finite; the skin was made for the model's lattice
   SoftBody<2>& add(std::shared_ptr<const SoftBodyModel<2>> model, const Eigen::Vector2f& position,
                    const Skin2d* drawn = nullptr);
 
@@ -173,7 +174,8 @@ class Box2dSoftBodies {
 
   /// Lets the solver begin the next step, of `step` seconds, while the caller does something else. If bodies change after
   /// all, or the step has another length, softcell discards that work and does it again. The result is the same, except
-  /// for what SoftBodySolver::drop() says of rotations. Call it between steps. @param step  as step()
+  /// for what SoftBodySolver::drop() says of rotations. Call it between steps. A step of 0 s begins nothing.
+  /// @throws std::invalid_argument  the step is negative or not finite
   void begin_ahead(float step);
 
   /// Moves the origin of the world with all that is in it, as b2World::ShiftOrigin() does, which this calls: soft bodies and the places in
@@ -185,11 +187,14 @@ class Box2dSoftBodies {
   /// joints fall asleep together, soft ones and rigid ones; each of them must be slow and allowed to sleep. A sleeping body
   /// wakes when something that moves comes to it, when what it lay on is removed, moved, disabled, made a sensor or changed in
   /// shape or filter, when gravity changes, when its user changes it, and when Box2D wakes one of its circles.
+  /// @throws std::invalid_argument  a setting is out of its range
   void let_sleep(const std::optional<SleepSettings>& settings);
 
-  std::size_t size() const;                                ///< number of soft bodies
-  SoftBody<2>& operator[](std::size_t index);              ///< in the order of add()
-  const SoftBody<2>& operator[](std::size_t index) const;  ///< in the order of add()
+  std::size_t size() const;  ///< number of soft bodies
+  /// The bodies in the order of add(). @throws std::out_of_range  there are not so many
+  SoftBody<2>& operator[](std::size_t index);
+  /// The same.
+  const SoftBody<2>& operator[](std::size_t index) const;
 
   /// A particle of one of the soft bodies.
   struct Particle {

@@ -166,7 +166,8 @@ class BulletSoftBodies {
 
   /// Lets the solver begin the next substep, of `step` seconds, while the caller does something else. If bodies change
   /// after all, or the substep has another length, softcell discards that work and does it again. The result is the
-  /// same, except for what SoftBodySolver::drop() says of rotations. Call it between steps. @pre step > 0
+  /// same, except for what SoftBodySolver::drop() says of rotations. Call it between steps. A step of 0 s begins nothing.
+  /// @throws std::invalid_argument  the step is negative or not finite
   void begin_ahead(float step);
 
   /// Lets bodies at rest sleep, or never (std::nullopt, the default). Bodies that touch with their surfaces fall asleep together with
@@ -177,6 +178,7 @@ class BulletSoftBodies {
   /// when an object near it is moved, removed or made a trigger volume, or gets another shape, size, group or mask. It does not wake then
   /// with spheres, for a soft body of another BulletSoftBodies, or if points within a shape change while its box stays the same: wake what
   /// rested on these yourself, a soft body by add_velocity({0, 0, 0}).
+  /// @throws std::invalid_argument  a setting is out of its range
   void let_sleep(const std::optional<SleepSettings>& settings);
 
   /// Appends the contacts at which soft bodies that touch with their surfaces pressed on something in the last substep.
@@ -212,9 +214,11 @@ class BulletSoftBodies {
   /// too soft or too light for what lies on it.
   CrushedCellCount crushed_cells() const;
 
-  std::size_t size() const;                                ///< number of soft bodies
-  SoftBody<3>& operator[](std::size_t index);              ///< in the order of add()
-  const SoftBody<3>& operator[](std::size_t index) const;  ///< in the order of add()
+  std::size_t size() const;  ///< number of soft bodies
+  /// The bodies in the order of add(). @throws std::out_of_range  there are not so many
+  SoftBody<3>& operator[](std::size_t index);
+  /// The same.
+  const SoftBody<3>& operator[](std::size_t index) const;
 
   /// A particle of one of the soft bodies.
   struct Particle {

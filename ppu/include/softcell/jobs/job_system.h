@@ -75,8 +75,8 @@ class JobSystem {
 
   /// Copies an image to main memory, where the job loops find it. Loading an image again returns the same copy. The image
   /// must outlive the system.
-  /// @throws std::invalid_argument  the image leaves no room for the job loop, or is not checked although the options
-  ///                                ask for findings.
+  /// @throws std::invalid_argument  the image is a program, a resident kernel or built for another machine than the job loop; it leaves
+  ///                                no room for the job loop; or it is not checked although the options ask for findings.
   /// @throws std::runtime_error     main memory is full.
   JobImage load(const ls_sim::KernelImage& image);
 

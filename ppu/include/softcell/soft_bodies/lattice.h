@@ -68,7 +68,8 @@ struct Lattice {
 
 /// Covers a mesh with cells of edge `cell_size` metres: every cell that a triangle touches, and every cell
 /// inside. Deterministic. The surface may have gaps smaller than a cell.
-/// @throws std::runtime_error  cell size not positive and finite; so large that one cell holds the whole
+/// @throws std::runtime_error  a mesh without triangles, with a coordinate that is NaN or infinite, or too far from the origin for
+///         floats to tell its cells; cell size not positive and finite; so large that one cell holds the whole
 ///         mesh; so small that the lattice passes kMaxLatticeParticles or kMaxLatticeCellsPerAxis (found
 ///         before anything is allocated for it); the message states the value and what would fit.
 Lattice<3> voxelize(const TriangleMesh& mesh, float cell_size);
@@ -80,8 +81,8 @@ std::size_t count_particles(const TriangleMesh& mesh, float cell_size);
 /// A lattice from cells given by their grid indices (any order, repeats ignored), all with fill 1.
 /// @param spacing  edge of a cell, metres
 /// @param origin   position of grid index 0, metres
-/// @throws std::runtime_error  no cells; a grid index above 1,000,000 or below -1,000,000; spacing not positive and finite; more
-///         than kMaxLatticeParticles particles or kMaxLatticeCellsPerAxis cells along an axis.
+/// @throws std::runtime_error  no cells; a grid index above 1,000,000 or below -1,000,000; spacing not positive and finite; an
+///         origin that is not finite; more than kMaxLatticeParticles particles or kMaxLatticeCellsPerAxis cells along an axis.
 Lattice<3> lattice_from_cells(std::span<const Eigen::Vector3i> cells, float spacing,
                               const Eigen::Vector3f& origin = Eigen::Vector3f::Zero());
 Lattice<2> lattice_from_cells(std::span<const Eigen::Vector2i> cells, float spacing,

@@ -20,8 +20,8 @@ std::vector<std::array<std::uint32_t, 3>> cell_triangles(const Lattice<2>& latti
 /// The lattice's boundary as closed loops: those around the body counter-clockwise, those around its holes clockwise, the last particle of
 /// each joined to its first. Where cells touch in one corner only, loops meet and do not cross. Deterministic.
 ///
-/// A body is drawn smaller than it collides: circles of SoftBodyModel<2>::contact_radius() around the
-/// outline's particles keep other things away.
+/// A body that is drawn so is smaller than it collides: other things stay SoftBodyModel<2>::contact_radius() away from this outline, by
+/// circles around its particles with ContactMethod::kSpheres, else by the edge of make_skin_2d().
 std::vector<std::vector<std::uint32_t>> outline(const Lattice<2>& lattice);
 
 }  // namespace softcell::ppu

@@ -67,12 +67,14 @@ using Outside2d = std::function<float(const Eigen::Vector2f&)>;
 /// @param margin   in cells, 0..kMaxSkinMargin
 /// @param outside  a shape that is drawn instead of the cells, wider by the margin: a disc is round, however few cells
 ///                 it has. Its edge lies no farther than a cell outside of the cells.
+/// @throws std::invalid_argument  the margin is out of its range
 /// @pre  the lattice has cells
 Skin2d make_skin_2d(const Lattice<2>& lattice, float margin, const Outside2d& outside = {});
 
 /// The same shape in parts, for cells of several colours. Each point belongs to the part whose cells are nearest. The parts
 /// cover the shape, and the lines between them are smooth. Deterministic.
 /// @param parts  for each cell, the number of its part  @return  one skin for each number up to the largest
+/// @throws std::invalid_argument  the margin is out of its range
 /// @pre  the lattice has cells, and a part for each
 std::vector<Skin2d> make_skin_parts_2d(const Lattice<2>& lattice, float margin, const Outside2d& outside,
                                        std::span<const std::uint32_t> parts);
@@ -90,6 +92,10 @@ Skin2d make_cover_2d(const Lattice<2>& lattice, const std::function<bool(const E
 /// @param lattice  of the body before it first broke   @param piece  SoftBodyModel::lattice() of the piece
 /// @pre  the piece is a part of that lattice
 Skin2d skin_of_piece(const Skin2d& whole, const Lattice<2>& lattice, const Lattice<2>& piece);
+
+/// @throws std::invalid_argument  the skin moves with cells or particles that the lattice has not, or its cells have another edge: it was made
+/// for another lattice
+void validate(const Skin2d& skin, const Lattice<2>& lattice);
 
 /// The point bound to a cell, also if it lies outside of the cell.
 /// @param cell  its number  @param at  grid coordinates: a particle of the lattice is at its grid index

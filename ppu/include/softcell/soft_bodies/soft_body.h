@@ -82,6 +82,7 @@ class SoftBody {
 
   /// Shape matching and damping: changes velocities, conserves momentum and angular momentum, moves nothing.
   /// @throws std::runtime_error  a particle is NaN or infinite; nothing has changed then.
+  /// @throws std::invalid_argument  the step is not above 0 and finite
   void pull(float step);
   /// Called instead of pull() by a solver that has computed shape matching and damping from positions() and velocities(). Momenta that the
   /// solver has lost by rounding are returned.
@@ -134,8 +135,8 @@ class SoftBody {
   // For the user, between time steps. Each of these functions increments revision(), which tells a coupling of the
   // change. Functions that make the rotations of the last step useless also increment resets().
 
-  /// Changes stiffness, damping, friction and restitution from the next time step on.
-  /// @throws std::runtime_error  as validate(); nothing has changed then
+  /// Changes stiffness, damping, friction, restitution, plasticity and fracture from the next time step on.
+  /// @throws std::runtime_error  as validate(); the model has too many particles for plasticity; nothing has changed then
   /// @pre cell_size, half_width, density and contacts are the model's
   void set_material(const SoftBodySettings& settings);
   void translate(const Vector& by);  ///< metres; finite

@@ -34,7 +34,8 @@ class SoftBodyModel {
   std::span<const float> masses() const { return masses_; }        ///< kg, of each particle
   float mass() const { return mass_; }                             ///< kg, of the body
 
-  /// Numbers of the outer particles, ascending. Outer particles collide; a body without contacts has none.
+  /// Numbers of the outer particles, ascending; a body without contacts has none. With ContactMethod::kSpheres these particles collide; else
+  /// what is drawn does.
   ///
   /// In two dimensions a particle is outer if fewer than four cells surround it; in a piece, the next particles behind its cuts are outer,
   /// too. In three dimensions all corners of the cells at the lattice's boundary are outer, so outer particles form two layers. One layer

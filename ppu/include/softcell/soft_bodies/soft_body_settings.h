@@ -63,9 +63,11 @@ struct SoftBodySettings {
 
 /// When bodies fall asleep. A sleeping body costs its solver nothing, and its coupling next to nothing.
 struct SleepSettings {
-  float speed = 0.05f;  ///< m/s: a body rests while its mean_speed() is below this
-  float seconds = 1;    ///< a body that has rested for this time falls asleep
+  float speed = 0.05f;  ///< m/s, 0 or above: a body rests while its mean_speed() is below this
+  float seconds = 1;    ///< 0 or above: a body that has rested for this time falls asleep
 };
+/// @throws std::invalid_argument  a value is negative or NaN; the message names it.
+void validate(const SleepSettings& settings);
 
 /// @throws std::runtime_error  a value is out of its range; the message names the value and the range.
 void validate(const SoftBodySettings& settings);

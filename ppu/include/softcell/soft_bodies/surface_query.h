@@ -46,6 +46,7 @@ class SurfaceQuery {
   /// @throws std::runtime_error  a particle is not finite.
   explicit SurfaceQuery(const SoftBody<kDimension>& body);
   /// For a body in two dimensions that is drawn with its own skin. @pre the skin has outlines, and is made for the body's lattice
+  /// @throws std::invalid_argument  as validate() of the skin and the lattice of the body's model.
   /// @throws std::runtime_error  a particle is not finite.
   template <std::same_as<Skin2d> Skin>
   requires(kDimension == 2) SurfaceQuery(const SoftBody<kDimension>& body, const Skin& drawn);
@@ -55,7 +56,9 @@ class SurfaceQuery {
   std::optional<Hit> cast_ray(const Vector& from, const Vector& to) const;
 
   /// The point where a sphere that moves from `from` to `to` (metres) first touches the surface from outside. If the sphere touches at
-  /// `from`, the share is 0. The normal points from the surface to the sphere's centre. @param radius  metres, above 0
+  /// `from`, or its centre is inside the body there, the share is 0. The normal points from the surface to the sphere's centre; if that is
+  /// inside, out of the body. @param radius  metres, above 0
+  /// @throws std::invalid_argument  the radius is not above 0 and finite  @pre both are finite
   std::optional<Hit> cast_sphere(const Vector& from, const Vector& to, float radius) const;
 
   /// Metres from a point to the nearest place of the surface; below 0 inside the body. A point is inside if a line from it does not leave

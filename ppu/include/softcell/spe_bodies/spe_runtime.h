@@ -33,7 +33,8 @@ struct SpeRuntimeOptions {
   /// If set, the SPEs run by the timing model and count their cycles here; they take turns, and work only while the PPU side waits for
   /// them. With machine = kSpu the cycles are those of a PS3. Null: nothing is timed. It must outlive the runtime.
   ls_sim::Timing* timing = nullptr;
-  std::chrono::milliseconds deadline{10'000};  ///< for one job; a job that takes longer is stopped and fails
+  std::chrono::milliseconds deadline{
+      10'000};  ///< for one job, above 0; a job that takes longer is stopped and fails
   /// Size of main memory: whole megabytes (2^20 bytes), from 1 to 2816. The host provides memory only for the part in use.
   std::uint64_t main_memory_bytes = dma::kMainMemoryBytes;
 };
@@ -42,7 +43,7 @@ struct SpeRuntimeOptions {
 /// threads that sleep while there is nothing to do. Used by one thread at a time, except where stated.
 class SpeRuntime final : public SolverFactory {
  public:
-  /// @throws std::invalid_argument  the number of SPEs is not 1..6, or the size of main memory is not one that
+  /// @throws std::invalid_argument  the number of SPEs, the deadline or the size of main memory is not one that
   ///                                SpeRuntimeOptions allows.
   /// @throws std::runtime_error     the host has no address range or no threads left, or its processor lacks
   ///                                AVX2 or FMA.

@@ -20,6 +20,8 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <stdexcept>
+#include <string>
 #include <vector>
 
 #include "softcell/dma/address_space.h"
@@ -52,12 +54,20 @@ struct DrawOrder {
   /// in the mesh, and some occur twice.
   std::span<const std::uint32_t> mesh_vertex;
 
-  /// An attribute of the mesh's vertices (texture coordinates, colours) in this order.
+  /// An attribute of the mesh's vertices (texture coordinates, colours) in this order; empty if it is empty, as it is of a mesh without it.
+  /// @throws std::invalid_argument  it has values, but none for one of the mesh's vertices
   template <class Value>
   std::vector<Value> reorder(const std::vector<Value>& of_mesh) const {
     std::vector<Value> reordered;
+    if (of_mesh.empty()) return reordered;
     reordered.reserve(mesh_vertex.size());
-    for (const std::uint32_t vertex : mesh_vertex) reordered.push_back(of_mesh.at(vertex));
+    for (const std::uint32_t vertex : mesh_vertex) {
+      if (vertex >= of_mesh.size())
+        throw std::invalid_argument("an attribute of " + std::to_string(of_mesh.size()) +
+                                    " values for a mesh that has a vertex " + std::to_string(vertex) +
+                                    "; expected is one for each vertex, or none");
+      reordered.push_back(of_mesh[vertex]);
+    }
     return reordered;
   }
 };
