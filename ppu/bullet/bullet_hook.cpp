@@ -59,9 +59,11 @@ void BulletHook::uninstall() {
 }
 
 void BulletHook::on_pre_tick(btDynamicsWorld* world, btScalar step) {
-  BulletHook* const hook = find(*world);
+  BulletHook* hook = find(*world);
   if (!hook) return;
   if (hook->previous_tick_) hook->previous_tick_(world, step);
+  hook = find(*world);  // the program's callback may have destroyed the soft bodies
+  if (!hook) return;
   for (SubstepClient* client : hook->clients_) client->begin_substep(step);
 }
 

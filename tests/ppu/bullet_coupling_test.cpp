@@ -362,6 +362,21 @@ TEST(BulletSoftBodies, ActOncePerSubstepAndCallWhatWasThere) {
   EXPECT_EQ(g_ticks, 8);
 }
 
+std::optional<BulletSoftBodies>* g_destroyed_in_tick = nullptr;
+void destroy_soft_bodies(btDynamicsWorld*, btScalar) { g_destroyed_in_tick->reset(); }
+
+/// As a program may that loads its next level there.
+TEST(BulletSoftBodies, MayBeDestroyedInTheProgramsOwnTick) {
+  BulletWorld bullet;
+  bullet.world().setInternalTickCallback(&destroy_soft_bodies, nullptr, true);
+  std::optional<BulletSoftBodies> soft(bullet.world());
+  g_destroyed_in_tick = &soft;
+  soft->add(block_model({2, 2, 2}, stiff(0.2f)), {0, 0, 0});
+  bullet.step(kFrame, 2);
+  EXPECT_FALSE(soft);
+  EXPECT_EQ(bullet.world().getNumCollisionObjects(), 0);
+}
+
 TEST(BulletSoftBodies, TheLengthOfTheSubstepCounts) {
   // Half a pull's way in one step is alpha (g - x) / h: after one step of any length a particle that was 1 cm
   // off in a body of one region is alpha cm nearer.
