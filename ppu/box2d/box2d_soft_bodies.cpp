@@ -12,6 +12,7 @@
 
 #include "ppu/bodies/break_body.h"
 #include "ppu/bodies/breaks.h"
+#include "ppu/bodies/checked_arguments.h"
 #include "ppu/bodies/step_ahead.h"
 #include "ppu/bodies/workshop.h"
 #include "ppu/box2d/box2d_attachments.h"
@@ -398,13 +399,7 @@ void Box2dSoftBodies::set_filter(const SoftBody<2>& body, const CollisionFilter&
   if (impl_->surfaces) impl_->surfaces->tell_those_on(coupled);
 }
 
-/// @throws std::invalid_argument  the step is negative or not finite
-static bool passes_time(float step) {
-  if (!(step >= 0) || !std::isfinite(step))
-    throw std::invalid_argument("Box2dSoftBodies: a step of " + base::shortest(step) +
-                                " s; expected are 0 s or more");
-  return step > 0;
-}
+static constexpr const char* kStep = "Box2dSoftBodies: a step";
 
 void Box2dSoftBodies::step(float step, int velocity_iterations, int position_iterations) {
   begin_step(step);
@@ -413,15 +408,15 @@ void Box2dSoftBodies::step(float step, int velocity_iterations, int position_ite
 }
 
 void Box2dSoftBodies::begin_step(float step) {
-  if (passes_time(step)) impl_->timed([&] { impl_->begin_step(step); });
+  if (passes_time(kStep, step)) impl_->timed([&] { impl_->begin_step(step); });
 }
 
 void Box2dSoftBodies::end_step(float step) {
-  if (passes_time(step)) impl_->timed([&] { impl_->end_step(step); });
+  if (passes_time(kStep, step)) impl_->timed([&] { impl_->end_step(step); });
 }
 
 void Box2dSoftBodies::begin_ahead(float step) {
-  if (passes_time(step)) impl_->timed([&] { impl_->solve.begin(step); });
+  if (passes_time(kStep, step)) impl_->timed([&] { impl_->solve.begin(step); });
 }
 
 void Box2dSoftBodies::shift_origin(const Vector2f& new_origin) {
@@ -451,10 +446,7 @@ SoftBody<2>& Box2dSoftBodies::operator[](std::size_t index) {
   return const_cast<SoftBody<2>&>(std::as_const(*this)[index]);
 }
 const SoftBody<2>& Box2dSoftBodies::operator[](std::size_t index) const {
-  if (index >= impl_->bodies.size())
-    throw std::out_of_range("soft body " + std::to_string(index) + " of a world of " +
-                            std::to_string(impl_->bodies.size()) + "; the first one is 0");
-  return impl_->bodies[index]->soft();
+  return body_at(impl_->bodies, index);
 }
 
 Box2dSoftBodies::Particle Box2dSoftBodies::particle_of(const b2Body& body) const {

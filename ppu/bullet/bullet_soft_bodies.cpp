@@ -3,7 +3,6 @@
 #include <BulletDynamics/Dynamics/btActionInterface.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -14,6 +13,7 @@
 
 #include "ppu/bodies/break_body.h"
 #include "ppu/bodies/breaks.h"
+#include "ppu/bodies/checked_arguments.h"
 #include "ppu/bodies/step_ahead.h"
 #include "ppu/bodies/workshop.h"
 #include "ppu/bullet/bullet_hook.h"
@@ -27,7 +27,6 @@
 #include "ppu/contacts/piece_sides.h"
 #include "ppu/surfaces/way_in_box.h"
 #include "softcell/base/assert.h"
-#include "softcell/base/text.h"
 
 namespace softcell::ppu {
 namespace {
@@ -412,11 +411,8 @@ std::vector<EndedAttachment> BulletSoftBodies::poll_ended_attachments() {
 }
 
 void BulletSoftBodies::begin_ahead(float step) {
-  if (!(step >= 0) || !std::isfinite(step))
-    throw std::invalid_argument("BulletSoftBodies: a substep of " + base::shortest(step) +
-                                " s; expected are 0 s or more");
-  if (step == 0) return;
-  timed(impl_->times.solve, [&] { impl_->solve.begin(step); });
+  if (passes_time("BulletSoftBodies: a substep", step))
+    timed(impl_->times.solve, [&] { impl_->solve.begin(step); });
 }
 
 void BulletSoftBodies::let_sleep(const std::optional<SleepSettings>& settings) {
@@ -472,10 +468,7 @@ SoftBody<3>& BulletSoftBodies::operator[](std::size_t index) {
   return const_cast<SoftBody<3>&>(std::as_const(*this)[index]);
 }
 const SoftBody<3>& BulletSoftBodies::operator[](std::size_t index) const {
-  if (index >= impl_->bodies.size())
-    throw std::out_of_range("soft body " + std::to_string(index) + " of a world of " +
-                            std::to_string(impl_->bodies.size()) + "; the first one is 0");
-  return impl_->bodies[index]->soft();
+  return body_at(impl_->bodies, index);
 }
 
 BulletSoftBodies::Particle BulletSoftBodies::particle_of(const btCollisionObject& object) {
