@@ -92,7 +92,8 @@ TEST(ManualPage, SaysWhatMayBeLeftOutAndWhatMayBeRepeated) {
 
 TEST(ManualPage, SaysWhichOptionsGoTogether) {
   const std::string page = without_escapes(run_softcell("man").output);
-  EXPECT_NE(page.find("longest side, 2 to 256 (default: 8); needs --mesh; not with --cell.\n"), std::string::npos);
+  EXPECT_NE(page.find("longest side, 2 to 256 (default: 8); needs --mesh; not with --cell.\n"),
+            std::string::npos);
   EXPECT_NE(page.find("in place of --cells; needs --mesh; not with --cells.\n"), std::string::npos);
   EXPECT_NE(page.find("(with --headless); those of an earlier run in it are removed.\n"), std::string::npos);
 }

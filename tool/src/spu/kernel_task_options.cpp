@@ -48,7 +48,8 @@ void KernelTaskOptions::add_to(CLI::App& verb) {
       ->type_name("WORD");
   verb.add_option("--in-mbox", in_mbox_, "Values waiting in each inbound mailbox, at most four")
       ->type_name("VALUE");
-  verb.add_option("--deadline", deadline_, "Seconds after which a run is stopped with a fault, 0.001 to 86400 (default: 10)")
+  verb.add_option("--deadline", deadline_,
+                  "Seconds after which a run is stopped with a fault, 0.001 to 86400 (default: 10)")
       ->type_name("SECONDS");
 }
 
