@@ -259,7 +259,7 @@ struct Box2dSoftBodies::Impl {
     }
     if (surfaces) {
       surfaces->follow_pieces(body, *whole, that_touch);
-      surfaces->forget_unused(bodies);
+      surfaces->forget_model(whole.get());
     } else {
       parting.add(pieces);
       if (!parting.empty()) filter.install();
@@ -335,8 +335,9 @@ void Box2dSoftBodies::remove(const SoftBody<2>& body) {
   impl_->forget_particles(**found);
   forget_removed(body, impl_->broken);
   if (impl_->surfaces) impl_->surfaces->forget(**found);
+  const SoftBodyModel<2>* const model = body.shared_model().get();
   impl_->bodies.erase(found);
-  if (impl_->surfaces) impl_->surfaces->forget_unused(impl_->bodies);
+  if (impl_->surfaces) impl_->surfaces->forget_model(model);
 }
 
 std::vector<SoftBody<2>*> Box2dSoftBodies::cut(const SoftBody<2>& body, const Cut2d& where) {

@@ -44,13 +44,10 @@ SurfaceContacts2d::SurfaceContacts2d(b2World& world, std::shared_ptr<ContactWork
 /// A piece is drawn as its part of the whole, and touches as it is drawn.
 std::unique_ptr<SurfaceContacts2d::Model> SurfaceContacts2d::make_piece(
     const std::shared_ptr<const SoftBodyModel<2>>& piece, const Model& whole) {
-  return std::make_unique<Model>(piece, skin_of_piece(whole.skin, whole.model->lattice(), piece->lattice()));
+  return std::make_unique<Model>(piece, skin_of_piece(whole.skin, whole.shared->lattice(), piece->lattice()));
 }
 
-void SurfaceContacts2d::adopt(std::unique_ptr<Model> piece) {
-  const SoftBodyModel<2>* const model = piece->model.get();
-  models_.try_emplace(model, std::move(piece));
-}
+void SurfaceContacts2d::adopt(std::unique_ptr<Model> piece) { models_.adopt(std::move(piece)); }
 
 const std::shared_ptr<const SurfaceContacts2d::Model>& SurfaceContacts2d::model_of(
     const std::shared_ptr<const SoftBodyModel<2>>& model) {
@@ -101,7 +98,7 @@ void SurfaceContacts2d::begin(Bodies bodies, const Box2dAttachments& attachments
     Kept& kept = kept_[&body];
     if (kept.model == nullptr) kept.number = next_number_++;
     if (soft.position(0) != kept.place_of_sides) kept.sides = {};  // the program has moved the body
-    kept.model = model_of(soft.shared_model()).get();
+    kept.model = model_of(soft.shared_model());
     lift(body, kept, step);
     softs_.push_back(&soft);
     BodyInStage& in_stage = in_stage_[i];
@@ -199,13 +196,15 @@ void SurfaceContacts2d::wake_those_in_the_way(Bodies bodies) {
 }
 
 void SurfaceContacts2d::step(Bodies bodies, Box2dAttachments& attachments, float step) {
-  if (has_removed_) forget_unused(bodies);  // a solver lets go of a model in its next step
-  has_removed_ = false;
-  if (bodies.empty()) return obstacles_.forget_places();
+  if (bodies.empty()) {
+    forget_unused();
+    return obstacles_.forget_places();
+  }
   SC_ASSERT(step > 0 && !world_.IsLocked(), "contacts of {} s within a step of Box2D, or of none", step);
   obstacles_.begin(world_, step, largest_cell(bodies));
   begin_attachments(bodies, attachments, step);
   begin(bodies, attachments, step);
+  forget_unused();
   wake_those_in_the_way(bodies);
   stage_.settings.bounces = {
       .least_speed = 1,  // Box2D's threshold for restitution
@@ -366,7 +365,7 @@ void SurfaceContacts2d::follow_pieces(const Box2dBody& body, const SoftBodyModel
   const auto there = kept_.find(&body);
   const Kept before = there != kept_.end() ? there->second : Kept();
   forget(body);
-  if (before.model == nullptr || before.model->model.get() != &whole) return;  // no step has had the whole
+  if (before.model == nullptr || before.model->shared.get() != &whole) return;  // no step has had the whole
   for (const Piece& piece : pieces) {
     Kept& kept = kept_[piece.body];
     const SoftBody<2>& soft = piece.body->soft();
@@ -390,19 +389,20 @@ void SurfaceContacts2d::shift(const Vector2f& by) {
   }
 }
 
-void SurfaceContacts2d::forget_unused(Bodies bodies) {
-  const auto is_unused = [&](const auto& known) {
-    const bool may_come_back = !known.first->is_piece() && known.second->model.use_count() > 1;
-    const auto is_of = [&](const auto& body) { return body->soft().shared_model().get() == known.first; };
-    const auto was_of = [&](const auto& kept) { return kept.second.model == known.second.get(); };
-    if (may_come_back || std::ranges::any_of(bodies, is_of) || std::ranges::any_of(kept_, was_of))
-      return false;
-    if (worker_) worker_->forget(known.second->contact);
-    return true;
-  };
-  // The last piece that goes lets go of the whole.
-  while (std::erase_if(models_, is_unused) > 0) continue;
-  has_removed_ = true;
+void SurfaceContacts2d::forget_model(const SoftBodyModel<2>* model) {
+  models_.forget(model, [&](const Model& known) {
+    if (worker_) worker_->forget(known.contact);
+  });
+  may_be_unused_ = true;  // somebody may hold the model for some time, as a solver does until its next step
+}
+
+/// @pre all bodies have been in a step, or there are none
+void SurfaceContacts2d::forget_unused() {
+  if (!may_be_unused_) return;
+  models_.forget_unused([&](const Model& known) {
+    if (worker_) worker_->forget(known.contact);
+  });
+  may_be_unused_ = false;
 }
 
 }  // namespace softcell::ppu

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "ppu/bodies/known_models.h"
 #include "ppu/box2d/box2d_attachments.h"
 #include "ppu/box2d/box2d_body.h"
 #include "ppu/box2d/box2d_links.h"
@@ -30,9 +31,10 @@ class SurfaceContacts2d {
   using Bodies = std::span<const std::unique_ptr<Box2dBody>>;
   /// The data that bodies of one model share.
   struct Model {
-    Model(std::shared_ptr<const SoftBodyModel<2>> shared, Skin2d drawn)
-        : model(std::move(shared)), skin(std::move(drawn)), layer(*model, skin), contact(layer) {}
-    std::shared_ptr<const SoftBodyModel<2>> model;
+    Model(std::shared_ptr<const SoftBodyModel<2>> model, Skin2d drawn)
+        : shared(std::move(model)), skin(std::move(drawn)), layer(*shared, skin), contact(layer) {}
+    const std::shared_ptr<const SoftBodyModel<2>>& model() const { return shared; }
+    std::shared_ptr<const SoftBodyModel<2>> shared;
     Skin2d skin;
     FlatLayer layer;
     ContactModel contact;
@@ -88,9 +90,10 @@ class SurfaceContacts2d {
   void follow_pieces(const Box2dBody& body, const SoftBodyModel<2>& whole, std::span<const Piece> pieces);
   /// Follows bodies and the world to another origin. @param by  metres, which all positions have just been moved by
   void shift(const Eigen::Vector2f& by);
-  /// Frees what is kept of a model that none of these bodies has any longer, if it is a piece's or nobody else holds the model.
-  /// @pre between steps
-  void forget_unused(Bodies bodies);
+  /// Tells that a body has gone or has another model now. Frees what is kept of a model that no body has any longer, if it is a piece's or
+  /// nobody else holds the model: now, or in the next step.
+  /// @param model  that the body had; need not exist any longer  @pre between steps
+  void forget_model(const SoftBodyModel<2>* model);
 
  private:
   /// A rigid body as it was when a soft one fell asleep on it, or when a sleeper near it first saw it.
@@ -101,8 +104,8 @@ class SurfaceContacts2d {
   };
   /// What is kept of each body.
   struct Kept {
-    std::uint32_t number = 0;      // in the order in which bodies were added
-    const Model* model = nullptr;  // null: the body is new
+    std::uint32_t number = 0;            // in the order in which bodies were added
+    std::shared_ptr<const Model> model;  // null: the body is new
     KnownSides sides;
     Eigen::Vector2f place_of_sides{0, 0};                // of the first particle, when `sides` last applied
     std::vector<Eigen::Vector3f> positions, velocities;  // of its layer, at the step's beginning
@@ -114,6 +117,7 @@ class SurfaceContacts2d {
   };
 
   const std::shared_ptr<const Model>& model_of(const std::shared_ptr<const SoftBodyModel<2>>& model);
+  void forget_unused();
   void lift(const Box2dBody& body, Kept& kept, float step);
   void begin(Bodies bodies, const Box2dAttachments& attachments, float step);
   void begin_attachments(Bodies bodies, Box2dAttachments& attachments, float step);
@@ -131,8 +135,8 @@ class SurfaceContacts2d {
 
   b2World& world_;
   std::shared_ptr<ContactWorker> worker_;
-  std::unordered_map<const SoftBodyModel<2>*, std::shared_ptr<const Model>> models_;
-  bool has_removed_ = false;  // bodies, since the last step
+  KnownModels<2, Model> models_;
+  bool may_be_unused_ = false;  // some of these
   std::unordered_map<const Box2dBody*, Kept> kept_;
   Box2dObstacles obstacles_{Box2dObstacles::Fixtures::kSolid};
   Box2dLinks links_;

@@ -5,13 +5,10 @@
 #include <BulletCollision/CollisionShapes/btCompoundShape.h>
 #include <BulletCollision/CollisionShapes/btConcaveShape.h>
 #include <BulletCollision/CollisionShapes/btConeShape.h>
-#include <BulletCollision/CollisionShapes/btConvexHullShape.h>
 #include <BulletCollision/CollisionShapes/btCylinderShape.h>
-#include <BulletCollision/CollisionShapes/btShapeHull.h>
 #include <BulletCollision/CollisionShapes/btSphereShape.h>
 #include <BulletCollision/CollisionShapes/btStaticPlaneShape.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
-#include <LinearMath/btConvexHullComputer.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -85,88 +82,6 @@ void add_rim(float radius, float height, std::vector<ObstacleEdge>& edges) {
     return Vector3f(radius * unit_rim()[i].x(), height, radius * unit_rim()[i].y());
   };
   for (std::size_t i = 0; i < kRimPoints; ++i) edges.push_back({point(i), point(i + 1)});
-}
-
-/// Faces and edges of the hull of some points.
-void find_hull(const std::vector<btVector3>& points, std::vector<Eigen::Vector4f>& planes,
-               std::vector<ObstacleEdge>& edges) {
-  btConvexHullComputer hull;
-  hull.compute(reinterpret_cast<const float*>(points.data()), sizeof(btVector3),
-               static_cast<int>(points.size()), 0, 0);
-  for (int f = 0; f < hull.faces.size(); ++f) {
-    // Newell's normal: it exists even for a face of nearly collinear corners.
-    Vector3f normal = Vector3f::Zero();
-    float height = 0;
-    int corners = 0;
-    const btConvexHullComputer::Edge* const first = &hull.edges[hull.faces[f]];
-    const btConvexHullComputer::Edge* edge = first;
-    do {
-      const Vector3f a = to_eigen(hull.vertices[edge->getSourceVertex()]);
-      const Vector3f b = to_eigen(hull.vertices[edge->getTargetVertex()]);
-      normal += a.cross(b);
-      if (edge->getSourceVertex() < edge->getTargetVertex()) edges.push_back({a, b});
-      edge = edge->getNextEdgeOfFace();
-      ++corners;
-    } while (edge != first);
-    if (!(normal.norm() > 0)) continue;
-    normal.normalize();
-    for (edge = first; corners > 0; --corners, edge = edge->getNextEdgeOfFace())
-      height = edge == first ? normal.dot(to_eigen(hull.vertices[edge->getSourceVertex()]))
-                             : std::max(height, normal.dot(to_eigen(hull.vertices[edge->getSourceVertex()])));
-    planes.push_back({normal.x(), normal.y(), normal.z(), height});
-  }
-}
-
-void find_points(const btConvexShape& shape, std::vector<btVector3>& points) {
-  points.clear();
-  if (shape.getShapeType() == CONVEX_HULL_SHAPE_PROXYTYPE) {
-    const auto& hull = static_cast<const btConvexHullShape&>(shape);
-    for (int i = 0; i < hull.getNumPoints(); ++i) points.push_back(hull.getScaledPoint(i));
-    return;
-  }
-  btShapeHull around(&shape);
-  around.buildHull(shape.getMargin());
-  points.assign(around.getVertexPointer(), around.getVertexPointer() + around.numVertices());
-}
-
-/// Up to this share of another length a length counts as none; and the thickness it gets instead, in both directions.
-constexpr float kNoLength = 1e-5f, kThickness = 1e-3f;
-
-/// The longest vector from `from` to a point after `measured` has projected it.
-template <class Measured>
-Vector3f farthest(const std::vector<btVector3>& points, const Vector3f& from, const Measured& measured) {
-  Vector3f most = Vector3f::Zero();
-  for (const btVector3& point : points) {
-    const Vector3f difference = measured(Vector3f(to_eigen(point) - from));
-    if (difference.squaredNorm() > most.squaredNorm()) most = difference;
-  }
-  return most;
-}
-
-/// Points in one plane or on one line have no inside out of which something could be pushed: each is replaced by two or four, on both
-/// sides. Points that all coincide stay as they are.
-void give_volume(std::vector<btVector3>& points) {
-  if (points.empty()) return;
-  const Vector3f origin = to_eigen(points.front());
-  const Vector3f along = farthest(points, origin, [](const Vector3f& d) { return d; });
-  const float length = along.norm();
-  if (!(length > 0)) return;
-  const Vector3f x = along / length;
-  const Vector3f across =
-      farthest(points, origin, [&](const Vector3f& d) { return Vector3f(d - d.dot(x) * x); });
-  const bool is_line = across.norm() < kNoLength * length;
-  const Vector3f y = is_line ? x.unitOrthogonal() : across.normalized(), z = x.cross(y);
-  const auto widen = [&](const Vector3f& direction) {
-    const btVector3 side = to_bullet(Vector3f(kThickness * length * direction));
-    const std::size_t count = points.size();
-    for (std::size_t i = 0; i < count; ++i) {
-      points.push_back(points[i] + side);
-      points[i] -= side;
-    }
-  };
-  const Vector3f out = farthest(points, origin, [&](const Vector3f& d) { return Vector3f(d.dot(z) * z); });
-  if (is_line) widen(y);
-  if (is_line || out.norm() < kNoLength * length) widen(z);
 }
 
 /// Half of a shape's length; a thickness if it is tiny compared with the longest half.
@@ -511,11 +426,18 @@ void BulletObstacles::add_shape(const btCollisionShape& shape, const btTransform
       if (!shape.isConvex())
         throw std::runtime_error(std::string("soft bodies cannot touch a shape of the kind ") +
                                  shape.getName() + "; it is neither convex nor made of triangles");
-      const Hull& hull = hull_of(static_cast<const btConvexShape&>(shape));
-      if (hull.planes.empty()) return;  // of no points, or of coinciding ones: it has no size
+      if (is_sphere_or_capsule(shape)) {
+        set_sphere_or_capsule(static_cast<const btMultiSphereShape&>(shape), obstacle);
+        edges = &more_edges();
+        edges->push_back({-obstacle.extent, obstacle.extent});
+        break;
+      }
+      ConvexHull& hull = hulls_[&shape];
+      hull.follow(static_cast<const btConvexShape&>(shape));
+      if (hull.planes().empty()) return;  // of no points, or of coinciding ones: it has no size
       obstacle.kind = ObstacleKind::kHull;
-      obstacle.planes = hull.planes;
-      obstacle.edges = hull.edges;
+      obstacle.planes = hull.planes();
+      obstacle.edges = hull.edges();
     }
   }
   if (edges != nullptr) obstacle.edges = *edges;
@@ -534,21 +456,6 @@ void BulletObstacles::add_triangles(const btCollisionShape& shape, Obstacle obst
   obstacle.kind = ObstacleKind::kTriangles;
   obstacle.triangles = triangles;
   push(obstacle, indices);
-}
-
-/// Made anew when the shape's points have changed.
-const BulletObstacles::Hull& BulletObstacles::hull_of(const btConvexShape& shape) {
-  find_points(shape, points_);
-  Hull& hull = hulls_[&shape];
-  if (hull.points != points_ || hull.planes.empty()) {
-    hull = {};
-    std::vector<ObstacleEdge> edges;
-    hull.points = points_;
-    give_volume(points_);
-    find_hull(points_, hull.planes, edges);
-    add_edges_of_hull(edges, hull.planes, hull.edges);
-  }
-  return hull;
 }
 
 void BulletObstacles::apply(const std::vector<bool>& at_rest) {

@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "ppu/bullet/convex_hull.h"
 #include "ppu/surfaces/moved_by_place.h"
 #include "ppu/surfaces/obstacle.h"
 #include "softcell/soft_bodies/mesh.h"
@@ -18,8 +19,8 @@ namespace softcell::ppu {
 
 /// The rigid bodies of a world that are near some boxes. Used by one thread. Allocates when there are more of them than ever before.
 ///
-/// Knows planes, spheres, boxes, capsules, cylinders, cones, convex hulls, compounds, triangle meshes and height fields. Any other convex
-/// shape is replaced by the hull of its support points in 42 directions.
+/// Knows planes, spheres, boxes, capsules, cylinders, cones, compounds, triangle meshes and height fields, and the hulls of all other convex
+/// shapes.
 class BulletObstacles {
  public:
   /// Which objects of the world are taken.
@@ -63,12 +64,6 @@ class BulletObstacles {
     Eigen::Vector3f along{0, 0, 0};
     float turn = 0;  ///< how far its spin moves any point at most
   };
-  /// Faces and edges of a convex hull.
-  struct Hull {
-    std::vector<btVector3> points;  // of which the hull was made
-    std::vector<Eigen::Vector4f> planes;
-    std::vector<ObstacleEdge> edges;
-  };
   using Triangle = std::array<Eigen::Vector3f, 3>;
   /// An object that only the program moves.
   struct Followed {
@@ -95,7 +90,6 @@ class BulletObstacles {
                  std::uint32_t part, const Bounds<3>& box, std::vector<std::uint32_t>& indices);
   void add_triangles(const btCollisionShape& shape, Obstacle obstacle, const Bounds<3>& box,
                      std::vector<std::uint32_t>& indices);
-  const Hull& hull_of(const btConvexShape& shape);
   std::vector<ObstacleEdge>& more_edges();
   std::vector<Triangle>& more_triangles();
   void push(const Obstacle& obstacle, std::vector<std::uint32_t>& indices);
@@ -108,7 +102,7 @@ class BulletObstacles {
   std::vector<btCollisionObject*> objects_;
   std::vector<std::uint32_t> rigid_of_;     // of each object of the world; kNone: not known yet
   std::vector<std::uint32_t> obstacle_of_;  // of each object without triangles; kNone: not known yet
-  std::map<const btCollisionShape*, Hull> hulls_;
+  std::map<const btCollisionShape*, ConvexHull> hulls_;
   // The first lists are in use in this substep; the others are kept for reuse.
   std::vector<std::vector<ObstacleEdge>> edges_;
   std::vector<std::vector<Triangle>> triangles_;
@@ -116,7 +110,6 @@ class BulletObstacles {
   std::vector<Leaving> leaving_;
   std::vector<Followed> followed_;  // for each object of the world; of one that others move, nothing
   std::vector<const btBroadphaseProxy*> found_;
-  std::vector<btVector3> points_;
 };
 
 }  // namespace softcell::ppu

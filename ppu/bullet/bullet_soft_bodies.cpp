@@ -108,7 +108,7 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
     return body.contact().model() != body.soft().shared_model();
   }
   void follow_model(SurfaceBody& body) {
-    if (is_of_other_model(body)) body.set_contact(*surfaces->contact_model(body.soft().shared_model()));
+    if (is_of_other_model(body)) body.set_contact(surfaces->contact_model(body.soft().shared_model()));
   }
   /// An assignment may have given the body another model. Its attachments refer to particles that it does not have, so they are removed.
   void take_other_model(SurfaceBody& body) {
@@ -207,7 +207,7 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
       follow_sides(before, with_attachments);
       follow_model(*with_attachments.front().body);
       surfaces->attachments().follow_pieces(*with_attachments.front().body, with_attachments, made.vanished);
-      surfaces->forget_unused(with_surfaces);
+      surfaces->forget_model(before.shared_model().get());
     }
     broken.push_back({&body.soft(), others, faces, made.vanished.size(), std::move(particles_before)});
     if (substeps_until_pieces(before.positions().size()) > 0) workshop->dispose(std::move(before));
@@ -219,8 +219,8 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
     if (!soft.settings().contacts) {
       body = std::make_unique<FreeBody>(world, std::move(soft));
     } else if (surfaces) {
-      const ContactModel& contact = *surfaces->contact_model(soft.shared_model());
-      auto surface = std::make_unique<SurfaceBody>(world, std::move(soft), contact, next_number++);
+      std::shared_ptr<const ContactModel> contact = surfaces->contact_model(soft.shared_model());
+      auto surface = std::make_unique<SurfaceBody>(world, std::move(soft), std::move(contact), next_number++);
       with_surfaces.push_back(surface.get());
       body = std::move(surface);
     } else {
@@ -349,8 +349,9 @@ void BulletSoftBodies::remove(const SoftBody<3>& body) {
     std::erase(impl_->with_surfaces, surface);
   }
   forget_removed(body, impl_->broken);
+  const SoftBodyModel<3>* const model = body.shared_model().get();
   impl_->bodies.erase(found);
-  if (impl_->surfaces) impl_->surfaces->forget_unused(impl_->with_surfaces);
+  if (impl_->surfaces) impl_->surfaces->forget_model(model);
 }
 
 std::vector<SoftBody<3>*> BulletSoftBodies::cut(const SoftBody<3>& body, const Cut& where) {

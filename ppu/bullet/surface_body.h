@@ -18,19 +18,19 @@ namespace softcell::ppu {
 
 class SurfaceBody final : public CoupledBody {
  public:
-  /// @param contact  of the model; must outlive this body
+  /// @param contact  of the model
   /// @param number  different from those of all other bodies of the world
-  SurfaceBody(btDiscreteDynamicsWorld& world, SoftBody<3> soft, const ContactModel& contact,
+  SurfaceBody(btDiscreteDynamicsWorld& world, SoftBody<3> soft, std::shared_ptr<const ContactModel> contact,
               std::uint32_t number)
-      : CoupledBody(world, std::move(soft)), contact_(&contact), number_(number) {}
+      : CoupledBody(world, std::move(soft)), contact_(std::move(contact)), number_(number) {}
 
   std::uint32_t number() const { return number_; }
   const ContactModel& contact() const { return *contact_; }
-  /// Tells that the body has another model than before. @param contact  of the new model; must outlive this body
-  void set_contact(const ContactModel& contact) {
-    SC_ASSERT(contact.model() == soft_.shared_model(), "a body of {} particles touches as one of {}",
-              soft_.model().particles(), contact.masses().size());
-    contact_ = &contact;
+  /// Tells that the body has another model than before. @param contact  of the new model
+  void set_contact(std::shared_ptr<const ContactModel> contact) {
+    SC_ASSERT(contact->model() == soft_.shared_model(), "a body of {} particles touches as one of {}",
+              soft_.model().particles(), contact->masses().size());
+    contact_ = std::move(contact);
   }
 
   void begin_substep() override {
@@ -125,7 +125,7 @@ class SurfaceBody final : public CoupledBody {
   Eigen::Vector3f place_of_sides_{0, 0, 0};  // where the first particle was when sides_ last applied
   std::optional<Bounds<3>> box_asleep_;
   std::vector<SeenObject> seen_;  // objects near the body since it fell asleep
-  const ContactModel* contact_;
+  std::shared_ptr<const ContactModel> contact_;
   std::uint32_t number_;
   bool holds_a_moving_body_ = false, is_still_ = false;
   bool is_attached_ = false;

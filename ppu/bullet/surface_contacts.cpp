@@ -37,24 +37,21 @@ const std::shared_ptr<const ContactModel>& SurfaceContacts::contact_model(
   return known;
 }
 
-void SurfaceContacts::adopt(std::unique_ptr<ContactModel> contact) {
-  SC_ASSERT(contact != nullptr, "no contact model is kept beside {}", models_.size());
-  const SoftBodyModel<3>* const model = contact->model().get();
-  models_.try_emplace(model, std::move(contact));
+void SurfaceContacts::adopt(std::unique_ptr<ContactModel> contact) { models_.adopt(std::move(contact)); }
+
+void SurfaceContacts::forget_model(const SoftBodyModel<3>* model) {
+  models_.forget(model, [&](const ContactModel& contact) {
+    if (worker_) worker_->forget(contact);
+  });
+  may_be_unused_ = true;  // somebody may hold the model for some time, as a solver does until its next step
 }
 
-void SurfaceContacts::forget_unused(std::span<SurfaceBody* const> bodies) {
-  const auto is_unused = [&](const auto& known) {
-    const ContactModel& contact = *known.second;
-    const bool may_come_back = !known.first->is_piece() && contact.model().use_count() > 1;
-    const auto is_of = [&](const SurfaceBody* body) { return &body->contact() == &contact; };
-    if (may_come_back || std::ranges::any_of(bodies, is_of)) return false;
+void SurfaceContacts::forget_unused() {
+  if (!may_be_unused_) return;
+  models_.forget_unused([&](const ContactModel& contact) {
     if (worker_) worker_->forget(contact);
-    return true;
-  };
-  // The last piece that goes lets go of the whole.
-  while (std::erase_if(models_, is_unused) > 0) continue;
-  has_removed_ = true;
+  });
+  may_be_unused_ = false;
 }
 
 template <typename Is>
@@ -104,8 +101,7 @@ void SurfaceContacts::see_what_is_near(SurfaceBody& sleeper, const BodyInStage& 
 }
 
 void SurfaceContacts::step(std::span<SurfaceBody* const> bodies, float step) {
-  if (has_removed_) forget_unused(bodies);  // a solver lets go of a model in its next step
-  has_removed_ = false;
+  forget_unused();
   obstacles_.begin(world_, step);
   if (!attachments_.empty()) attachments_.begin();
   in_stage_.resize(bodies.size());

@@ -2,12 +2,12 @@
 // Handles the contacts of all soft bodies of a BulletSoftBodies that touch with their surfaces.
 
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <span>
 #include <utility>
 #include <vector>
 
+#include "ppu/bodies/known_models.h"
 #include "ppu/bullet/bullet_links.h"
 #include "ppu/bullet/bullet_obstacles.h"
 #include "ppu/bullet/surface_attachments.h"
@@ -30,14 +30,15 @@ class SurfaceContacts {
     stage_.attachments = &in_step_;
   }
 
-  /// The data that all bodies of a model share, made at the first call and kept until forget_unused() finds no use of it.
+  /// The data that all bodies of a model share, made at the first call.
   const std::shared_ptr<const ContactModel>& contact_model(
       const std::shared_ptr<const SoftBodyModel<3>>& model);
   /// Keeps a model that was made elsewhere, as if contact_model() had made it.
   void adopt(std::unique_ptr<ContactModel> contact);
-  /// Frees what is kept of a model that none of these bodies has any longer, if it is a piece's or nobody else holds the model.
-  /// @pre between substeps
-  void forget_unused(std::span<SurfaceBody* const> bodies);
+  /// Tells that a body has gone or has another model now. Frees what is kept of a model that no body has any longer, if it is a piece's or
+  /// nobody else holds the model: now, or in the next substep.
+  /// @param model  that the body had; need not exist any longer  @pre between substeps
+  void forget_model(const SoftBodyModel<3>* model);
 
   /// Finds and solves the contacts of the substep that begins, moves all particles of bodies that are awake, and gives rigid bodies their
   /// impulses. Wakes bodies that are touched.
@@ -63,6 +64,7 @@ class SurfaceContacts {
  private:
   using Touch = TouchLog<ContactEvent>::Touch;
 
+  void forget_unused();
   void move(std::span<SurfaceBody* const> bodies, float step);
   void wake_those_in_the_way(std::span<SurfaceBody* const> bodies);
   void find_at_rest(std::span<SurfaceBody* const> bodies);
@@ -77,8 +79,8 @@ class SurfaceContacts {
 
   btDiscreteDynamicsWorld& world_;
   std::shared_ptr<ContactWorker> worker_;
-  std::map<const SoftBodyModel<3>*, std::shared_ptr<const ContactModel>> models_;
-  bool has_removed_ = false;  // bodies, since the last substep
+  KnownModels<3, ContactModel> models_;
+  bool may_be_unused_ = false;  // some of these
   BulletObstacles obstacles_{BulletObstacles::Objects::kSolid};
   BulletLinks links_;
   SurfaceAttachments attachments_{world_};
