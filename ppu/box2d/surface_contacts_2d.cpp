@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <optional>
+#include <utility>
 
 #include "ppu/contacts/overlap.h"
 #include "ppu/contacts/piece_sides.h"
@@ -96,7 +97,7 @@ void SurfaceContacts2d::begin(Bodies bodies, const Box2dAttachments& attachments
     Box2dBody& body = *bodies[i];
     const SoftBody<2>& soft = body.soft();
     Kept& kept = kept_[&body];
-    if (kept.model == nullptr) kept.number = next_number_++;
+    if (kept.number == kNoNumber) kept.number = next_number_++;
     if (soft.position(0) != kept.place_of_sides) kept.sides = {};  // the program has moved the body
     kept.model = model_of(soft.shared_model());
     lift(body, kept, step);
@@ -348,24 +349,30 @@ void SurfaceContacts2d::let_lie(const Box2dBody& body) {
   }
 }
 
-void SurfaceContacts2d::forget(const Box2dBody& body) {
-  if (const auto known = kept_.find(&body); known != kept_.end()) {
-    rise(known->second);
-    kept_.erase(known);
-  }
+/// What the body touched in the last step, and what it lies on.
+void SurfaceContacts2d::forget_contacts(const Box2dBody& body) {
+  if (const auto known = kept_.find(&body); known != kept_.end()) rise(known->second);
   std::erase_if(touches_.soft, [&](const auto& pair) { return pair.first == &body || pair.second == &body; });
   std::erase_if(touches_.rigid, [&](const auto& pair) { return pair.first == &body; });
   tell_those_on(body);
-  log_.forget(body.soft());
   stage_.forget_who_presses();
 }
 
+void SurfaceContacts2d::forget(const Box2dBody& body) {
+  forget_contacts(body);
+  kept_.erase(&body);
+  log_.forget(body.soft());
+}
+
+/// The body keeps its number: for the program it goes on, as one of its pieces, and so do its touches.
 void SurfaceContacts2d::follow_pieces(const Box2dBody& body, const SoftBodyModel<2>& whole,
                                       std::span<const Piece> pieces) {
+  forget_contacts(body);
   const auto there = kept_.find(&body);
-  const Kept before = there != kept_.end() ? there->second : Kept();
-  forget(body);
-  if (before.model == nullptr || before.model->shared.get() != &whole) return;  // no step has had the whole
+  if (there == kept_.end()) return;  // no step has had it
+  const Kept before = std::exchange(there->second, Kept());
+  there->second.number = before.number;
+  if (before.model == nullptr || before.model->shared.get() != &whole) return;
   for (const Piece& piece : pieces) {
     Kept& kept = kept_[piece.body];
     const SoftBody<2>& soft = piece.body->soft();

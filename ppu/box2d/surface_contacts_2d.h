@@ -102,10 +102,11 @@ class SurfaceContacts2d {
     b2Transform pose;
     std::uint64_t look;  // Box2dObstacles::look()
   };
+  static constexpr std::uint32_t kNoNumber = ~0u;
   /// What is kept of each body.
   struct Kept {
-    std::uint32_t number = 0;            // in the order in which bodies were added
-    std::shared_ptr<const Model> model;  // null: the body is new
+    std::uint32_t number = kNoNumber;    // in the order in which bodies were added
+    std::shared_ptr<const Model> model;  // null: no step has had it as it is
     KnownSides sides;
     Eigen::Vector2f place_of_sides{0, 0};                // of the first particle, when `sides` last applied
     std::vector<Eigen::Vector3f> positions, velocities;  // of its layer, at the step's beginning
@@ -117,6 +118,7 @@ class SurfaceContacts2d {
   };
 
   const std::shared_ptr<const Model>& model_of(const std::shared_ptr<const SoftBodyModel<2>>& model);
+  void forget_contacts(const Box2dBody& body);
   void forget_unused();
   void lift(const Box2dBody& body, Kept& kept, float step);
   void begin(Bodies bodies, const Box2dAttachments& attachments, float step);

@@ -128,10 +128,12 @@ btVector3 where_it_moves(const btVector3& change, const btVector3& factor) {
           factor.z() == 0 ? 0 : change.z()};
 }
 
-/// Whether nothing moves an object but the program by its place. Bullet gives kinematic bodies a velocity, but not other kinematic objects.
+/// Whether nothing moves an object but the program by its place. Bullet gives kinematic bodies a velocity, unless they are asleep, but not
+/// other kinematic objects.
 bool may_be_moved_by_place(const btCollisionObject& object) {
   const btRigidBody* const body = btRigidBody::upcast(&object);
-  return body == nullptr || (body->isStaticObject() && !body->isKinematicObject());
+  if (body == nullptr) return true;
+  return body->isKinematicObject() ? body->getActivationState() == ISLAND_SLEEPING : body->isStaticObject();
 }
 
 Pose as_pose(const btTransform& pose) { return {to_eigen(pose.getOrigin()), to_eigen(pose.getBasis())}; }
@@ -284,6 +286,7 @@ void BulletObstacles::add_near(const Bounds<3>& box, int group, int mask,
   keep_each_once(found_, [](const auto* a, const auto* b) { return a->m_uniqueId < b->m_uniqueId; });
   for (const btBroadphaseProxy* const proxy : found_) {
     auto& object = *static_cast<btCollisionObject*>(proxy->m_clientObject);
+    if (object.getInternalType() == btCollisionObject::CO_SOFT_BODY) continue;  // one of Bullet's own
     if (object.hasContactResponse() == (role_ == Objects::kSolid))
       add_object(object, behind(box, way_of(object)), indices);
   }

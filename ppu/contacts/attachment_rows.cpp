@@ -19,6 +19,8 @@ namespace {
 constexpr float kMostPushInCells = 0.25f;
 // Places of several particles correct only this share: pushes deform the patch, too, which takes some substeps to recover.
 constexpr float kPushShareOfPlaces = 0.2f;
+// Up to this gap all angular momentum that it gives is taken back.
+constexpr float kMostApartInCells = 0.5f;
 
 /// Mass, middle and spread of a patch.
 template <int kDimension>
@@ -701,6 +703,14 @@ auto AttachmentRows<kDimension>::spin_of_pushes() const -> Axial {
   return size > most ? Axial(most / size * sum) : sum;
 }
 
+/// Ends that are a body's length apart, as after a teleport, have a lever with which small patches would be thrown about.
+template <int kDimension>
+double AttachmentRows<kDimension>::share_taken_back(const Vector& apart) const {
+  const double limit = double{kMostApartInCells} * double{sides_.a.spacing};
+  const double squared = apart.template cast<double>().squaredNorm();
+  return squared > limit * limit ? limit * limit / squared : 1;
+}
+
 template <int kDimension>
 void AttachmentRows<kDimension>::take_back_spin(bool is_alone) {
   if (!takes_back_spin()) return;
@@ -710,8 +720,8 @@ void AttachmentRows<kDimension>::take_back_spin(bool is_alone) {
   if (softness_ > 0 || is_alone)
     for (const Row& row : rows_) {
       const Vector apart = a_.of(row.a, sides_.a.positions) - row.point;
-      given +=
-          turning::cross(apart.template cast<double>().eval(), row.impulse.template cast<double>().eval());
+      given += share_taken_back(apart) * turning::cross(apart.template cast<double>().eval(),
+                                                        row.impulse.template cast<double>().eval());
     }
   if (pushes_soft_body_only() && is_alone) given += spin_of_pushes();
   TurnedPatches<kDimension> patches;

@@ -148,6 +148,7 @@ class AttachmentRows {
   using Axial = turning::Axial<kDimension>;
   bool pushes_soft_body_only() const;
   Axial spin_of_pushes() const;
+  double share_taken_back(const Vector& apart) const;
   struct Side {
     std::vector<std::uint32_t> particle;
     std::vector<float> share;

@@ -305,6 +305,39 @@ TEST_P(SolvedBy, AFreeBodyAndARigidOneThatAreApartKeepTheirAngularMomentum) {
   }
 }
 
+/// A crate and what hangs on it are put at other places, metres apart. What took back the angular momentum of forces between such ends threw
+/// them about, faster and faster: 1e28 J.
+TEST_P(SolvedBy, EndsThatWerePutFarApartComeTogetherCalmly) {
+  for (const AttachmentKind kind : {AttachmentKind::kWeld, AttachmentKind::kHinge})
+    for (const float way : {1.0f, 3.0f, 10.0f})
+      for (const bool is_soft_moved : {false, true}) {
+        AttachedWorld w(GetParam(), {0, 0, 0});
+        SoftBody<3>& body = w.add(block({0.3f, 0.3f, 0.3f}), settings_of(kCell, 0.9f, 0.2f), {0.36f, 0, 0});
+        btRigidBody& crate = w.add(std::make_unique<btBoxShape>(btVector3(0.2f, 0.2f, 0.2f)), 20, {0, 0, 0});
+        const AttachmentId held = w.bodies.attach(
+            body, Patch<3>::of_surface({0.21f, 0, 0}, 0.12f), crate,
+            {.kind = kind,
+             .point = kind == AttachmentKind::kWeld ? std::optional<Vector3f>() : Vector3f(0.21f, 0, 0),
+             .axis = {0, 0, 1}});
+        w.run(5);
+        if (is_soft_moved)
+          body.translate({way, 0.1f * way, 0});
+        else
+          crate.setWorldTransform(btTransform(btQuaternion::getIdentity(), {way, 0.1f * way, 0}));
+        float fastest = 0;
+        for (int i = 0; i < 300; ++i) {
+          w.run(1);
+          fastest = std::max(fastest, ContactWorld::fastest(body));
+        }
+        const std::string what = std::to_string(static_cast<int>(kind)) + ", " + std::to_string(way) + " m";
+        EXPECT_LT(fastest, 3 * 0.25f * kCell / kStep) << what;
+        EXPECT_LT(ContactWorld::fastest(body), 0.25f * kCell / kStep)
+            << what << ": it may turn about the hinge";
+        EXPECT_LT(crate.getLinearVelocity().length(), 0.5f) << what;
+        EXPECT_LT(w.bodies.attachment(held)->gap, 0.1f * kCell) << what;
+      }
+}
+
 /// The rope pulls its ends together: each comes nearer by at most a quarter of a cell in a substep, and bodies get no faster than that.
 TEST_P(SolvedBy, ARopeThatIsTooShortHauls) {
   AttachedWorld w(GetParam(), {0, 0, 0});

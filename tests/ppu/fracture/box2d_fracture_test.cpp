@@ -713,5 +713,52 @@ TEST_P(Box2dFracture, ABodyBrokenToSingleCellsIsStillASetOfBodies) {
   }
 }
 
+/// The impact that breaks a body was lost: what its touches had been told was forgotten with the whole.
+TEST(Box2dFractureEvents, TellOfAllImpulsesWhileABodyBreaks) {
+  World2d w(9.81f, ContactMethod::kSurface);
+  w.add_box({0, -0.5f}, {0.1f, 0.5f});
+  w.soft.watch_contacts(true);
+  SoftBodySettings settings = brittle_2d(0.1f);
+  settings.friction = 0;  // events have the impulses along normals
+  SoftBody<2>& bar = w.soft.add(rectangle_model({10, 2}, settings), {0, 0.1f});
+  const double mass = double{bar.model().mass()};
+  bar.add_velocity({0, -6});
+  double told = 0;
+  for (int i = 0; i < 60; ++i) {
+    w.soft.step(kStep2d);
+    for (const ContactEvent2d& event : w.soft.poll_contact_events())
+      if (event.other == nullptr) told += double{event.impulse} * double{event.normal.y()};
+  }
+  EXPECT_GT(w.soft.size(), 2u);
+  const double given = sums_of(w.soft).momentum.y() + mass * (6 + 60 * double{kStep2d} * 9.81);
+  EXPECT_GT(given, 0.3 * mass * 6);
+  EXPECT_NEAR(told, given, 0.02 * given);
+}
+
+/// For the program the body goes on, as one of its pieces: a goal must not count twice.
+TEST(Box2dFractureEvents, ABodyThatIsCutStillTouchesWhatItTouched) {
+  World2d w(9.81f, ContactMethod::kSurface);
+  const b2Body* const floor = w.add_box({0, -0.5f}, {5, 0.5f});
+  b2Body* const goal = w.add_box({0, 0.2f}, {2, 0.2f});
+  goal->GetFixtureList()->SetSensor(true);
+  w.soft.watch_contacts(true);
+  SoftBody<2>& block = w.soft.add(rectangle_model({6, 3}, brittle_2d(1)), {0, 0.05f});
+  w.run(1);
+  w.soft.poll_contact_events();
+  const std::vector<SoftBody<2>*> pieces = w.soft.cut(block, Cut2d::line({0.01f, 0}, {1, 0}));
+  ASSERT_EQ(pieces.size(), 1u);
+  w.soft.step(kStep2d);
+  int with_floor = 0, in_goal = 0;
+  for (const ContactEvent2d& event : w.soft.poll_contact_events()) {
+    EXPECT_NE(event.kind, ContactEvent2d::Kind::kEnd);
+    if (event.body != &block || event.other != nullptr) continue;
+    EXPECT_EQ(event.kind, ContactEvent2d::Kind::kPersist);
+    with_floor += event.rigid == floor ? 1 : 0;
+    in_goal += event.rigid == goal ? 1 : 0;
+  }
+  EXPECT_EQ(with_floor, 1);
+  EXPECT_EQ(in_goal, 1);
+}
+
 }  // namespace
 }  // namespace softcell::ppu
