@@ -247,6 +247,11 @@ ElementWidths AddressSpace::element_widths_at(EffectiveAddress ea) const {
   return {.element_bytes = mapping->element_bytes, .layout = mapping->layout, .begin = mapping->ea};
 }
 
+std::uint64_t AddressSpace::main_memory_bytes() const {
+  if (is_host_program()) throw std::logic_error(kNoBuffers);
+  return main_->bytes();
+}
+
 std::uint64_t AddressSpace::free_bytes(Memory memory) const {
   if (is_host_program()) throw std::logic_error(kNoBuffers);
   const std::lock_guard lock(arena_mutex_);

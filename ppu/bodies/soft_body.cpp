@@ -238,6 +238,21 @@ template <int kDimension>
 SoftBody<kDimension>::~SoftBody() = default;
 
 template <int kDimension>
+void SoftBody<kDimension>::set_particle(std::size_t particle, const Vector& position,
+                                        const Vector& velocity) {
+  SC_ASSERT(particle < x_.size(), "particle {} of {}", particle, x_.size());
+  x_[particle] = position;
+  v_[particle] = velocity;
+  if constexpr (kDimension == 3) padded_[particle] = {position.x(), position.y(), position.z(), 0};
+}
+
+template <int kDimension>
+void SoftBody<kDimension>::set_velocity(std::size_t particle, const Vector& velocity) {
+  SC_ASSERT(particle < v_.size(), "particle {} of {}", particle, v_.size());
+  v_[particle] = velocity;
+}
+
+template <int kDimension>
 void SoftBody<kDimension>::place_at_rest(const Vector& position) {
   for (std::size_t i = 0; i < x_.size(); ++i)
     set_particle(i, model_->lattice().rest_position(i) + position, Vector::Zero());
@@ -385,8 +400,11 @@ void SoftBody<kDimension>::inherit_state(const SoftBody& whole, std::span<const 
                                          const Eigen::Vector<double, kDimension>& centre) {
   SC_ASSERT(x_.size() == particle_of.size(), "{} particles of a piece of {}", particle_of.size(), x_.size());
   set_material(whole.settings_);
-  for (std::size_t i = 0; i < particle_of.size(); ++i)
+  for (std::size_t i = 0; i < particle_of.size(); ++i) {
+    SC_ASSERT(particle_of[i] < whole.x_.size(), "particle {} of a piece is particle {} of {}", i,
+              particle_of[i], whole.x_.size());
     set_particle(i, whole.x_[particle_of[i]], whole.v_[particle_of[i]]);
+  }
   matcher_->take_rotations(*whole.matcher_, particle_of);
   const double share = double{model_->mass()} / double{whole.model_->mass()};
   lost_->inherit(*whole.lost_, std::min(share, 1.0), precise_centre_of_mass() - centre);

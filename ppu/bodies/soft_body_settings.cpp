@@ -1,5 +1,4 @@
 #include <cmath>
-#include <sstream>
 #include <stdexcept>
 #include <string>
 
@@ -14,9 +13,8 @@ namespace {
 
 void require(bool in_range, const char* name, float value, const char* range) {
   if (in_range && std::isfinite(value)) return;
-  std::ostringstream sentence;
-  sentence << "a soft body's " << name << " is " << value << "; it must be " << range;
-  throw std::runtime_error(sentence.str());
+  throw std::runtime_error(std::string("a soft body's ") + name + " is " + base::shortest(value) +
+                           "; it must be " + range);
 }
 
 }  // namespace
@@ -37,7 +35,8 @@ void validate(const SoftBodySettings& s) {
     throw std::runtime_error("a soft body's half_width is " + std::to_string(s.half_width) +
                              "; it must be a number of links from 0 to " + std::to_string(kMaxHalfWidth));
   }
-  require(s.density > 0, "density", s.density, "in kg/m^3 and above 0");
+  require(s.density > 0, "density", s.density,
+          "a number above 0, in kg/m^3 (of a two-dimensional body in kg/m^2)");
   require(s.alpha >= 0 && s.alpha <= 1, "alpha", s.alpha, "from 0 to 1");
   require(s.damping >= 0 && s.damping <= 1, "damping", s.damping, "from 0 to 1");
   require(s.friction >= 0, "friction", s.friction, "0 or above");

@@ -16,7 +16,7 @@ Workshop::~Workshop() {
 }
 
 void Workshop::add(std::function<void()> task) {
-  SC_ASSERT(task != nullptr, "a task behind {} others does nothing", tasks_.size());
+  SC_ASSERT(task != nullptr, "an empty task is added behind {} others", tasks_.size());
   bool wake = false;
   {
     const std::lock_guard lock(mutex_);

@@ -12,6 +12,7 @@
 
 #include "job_chain.h"
 #include "softcell/base/assert.h"
+#include "softcell/base/text.h"
 #include "softcell/dma/buffer.h"
 #include "softcell/dma/reservations.h"
 
@@ -173,6 +174,7 @@ struct JobSystem::State {
   void ring(int spe);
   void announce_work();
   void fail_unfinished();
+  void fail_if_under_way(JobChain::State& chain, const std::string& reason);
   void tell_end(JobChain::State& chain, std::uint32_t kick);
   template <class Line, class Change>
   Line change(dma::Buffer<Line>& at, const Change& how, std::size_t index = 0) {
@@ -295,7 +297,10 @@ void JobSystem::State::kick(JobChain::State& chain, const ChainState& state) {
   memory.reservations().store_line(holder, chain_states.ea(chain.board_slot),
                                    host_of(chain_states, chain.board_slot),
                                    reinterpret_cast<const std::byte*>(&state));
-  if (loops_left == 0 && !stopping) {
+  if (stopping) {
+    fail_if_under_way(
+        chain, "chain '" + chain.name + "' was kicked after JobSystem::stop(): none of its jobs has run");
+  } else if (loops_left == 0) {
     breakdown.clear();
     start_loops();
   } else {
@@ -351,25 +356,28 @@ bool JobSystem::State::record_failure(int spe, const ls_sim::RunResult& result) 
 
 /// No loop runs, and none will before the next kick: a job that has not ended by now never would.
 void JobSystem::State::fail_unfinished() {
-  for (JobChain::State* chain : chains) {
-    if (chain == nullptr) continue;
-    ChainDone done;
-    memory.reservations().load_and_reserve(holder, chain->done.ea(), host_of(chain->done),
-                                           reinterpret_cast<std::byte*>(&done));
-    std::uint32_t jobs = 0;
-    const ChainState state = change_state(*chain, [&](ChainState& line) {
-      if (line.kick == done.kick) return;  // not under way: its owner may be filling it
-      jobs = static_cast<std::uint32_t>(chain->kernels.size());
-      line.next = line.stage_end;  // so that nobody takes one
-      if (line.failed++ == 0) {
-        line.failed_job = jobs;
-        line.failed_status = kFaulted;
-      }
-    });
-    if (state.kick == done.kick) continue;
-    chain->faults.push_back({jobs, breakdown});
-    tell_end(*chain, state.kick);
-  }
+  for (JobChain::State* chain : chains)
+    if (chain != nullptr) fail_if_under_way(*chain, breakdown);
+}
+
+void JobSystem::State::fail_if_under_way(JobChain::State& chain, const std::string& reason) {
+  SC_ASSERT(loops_left == 0, "chain '{}' fails while {} loops run", chain.name, loops_left);
+  ChainDone done;
+  memory.reservations().load_and_reserve(holder, chain.done.ea(), host_of(chain.done),
+                                         reinterpret_cast<std::byte*>(&done));
+  std::uint32_t jobs = 0;
+  const ChainState state = change_state(chain, [&](ChainState& line) {
+    if (line.kick == done.kick) return;  // not under way: its owner may be filling it
+    jobs = static_cast<std::uint32_t>(chain.kernels.size());
+    line.next = line.stage_end;  // so that nobody takes one
+    if (line.failed++ == 0) {
+      line.failed_job = jobs;
+      line.failed_status = kFaulted;
+    }
+  });
+  if (state.kick == done.kick) return;
+  chain.faults.push_back({jobs, reason});
+  tell_end(chain, state.kick);
 }
 
 void JobSystem::State::tell_end(JobChain::State& chain, std::uint32_t kick) {
@@ -420,10 +428,13 @@ JobChain::State::State(JobSystem::State& system, const std::string& chain_name, 
       done(system.memory, chain_name + ": done", 1, kWords),
       holder(system.memory.reservations(), &listener),
       most_jobs(most) {
+  stage_ends.reserve(most);  // each stage has a job
   const std::scoped_lock lock(shared.mutex);
   const auto slot = std::find(shared.chains.begin(), shared.chains.end(), nullptr);
   if (slot == shared.chains.end()) {
-    throw std::runtime_error("a job system has at most " + std::to_string(spu::kMaxChains) + " chains");
+    throw std::runtime_error("no room for chain '" + name + "': a job system has at most " +
+                             std::to_string(spu::kMaxChains) +
+                             " chains (a solver has one, a skinner two, a world's contacts on SPEs two)");
   }
   *slot = this;
   board_slot = static_cast<std::size_t>(slot - shared.chains.begin());
@@ -514,6 +525,7 @@ void JobChain::reserve(std::size_t most_jobs) {
   if (most_jobs <= state.most_jobs) return;
   state.wait();
   dma::Buffer<JobDescriptor> more = room_for(state.shared.memory, state.name, most_jobs);
+  state.stage_ends.reserve(most_jobs);
   std::copy_n(state.descriptors.data(), size(), more.data());
   state.descriptors = std::move(more);
   state.most_jobs = most_jobs;
@@ -529,7 +541,9 @@ void JobChain::add(const Job& job) {
   SC_ASSERT(!state_->under_way, "add() while the chain's {} jobs are under way", size());
   SC_ASSERT(job.image.kernel_ != nullptr, "job {} has no image; JobSystem::load() returns one", size());
   if (state_->kernels.size() == state_->most_jobs) {
-    throw std::length_error("a chain of " + std::to_string(state_->most_jobs) + " jobs is full");
+    throw std::length_error("chain '" + state_->name + "' has room for " +
+                            base::counted(state_->most_jobs, "job") + " and has " +
+                            std::to_string(state_->most_jobs) + "; reserve() makes more room");
   }
   const ls_sim::KernelImage& kernel = *job.image.kernel_;
   JobDescriptor descriptor{};

@@ -326,6 +326,8 @@ void deform(const Skin2d& skin, std::span<const Vector2f> particles, std::span<V
     Vector2f position = Vector2f::Zero(), x = Vector2f::Zero(), y = Vector2f::Zero();
     for (std::uint32_t k = skin.first_pull[i]; k < skin.first_pull[i + 1]; ++k) {
       const Pull2d& pull = skin.pulls[k];
+      SC_ASSERT(pull.particle < particles.size(), "vertex {} is pulled by particle {} of {}", i,
+                pull.particle, particles.size());
       const Vector2f& particle = particles[pull.particle];
       position += pull.share * particle;
       x += pull.along_x * particle;

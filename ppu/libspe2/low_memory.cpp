@@ -100,7 +100,8 @@ int is_program_fixed(dl_phdr_info* program, std::size_t, void* fixed) {
   dl_iterate_phdr(&is_program_fixed, &fixed);
   if (!fixed) {
     give_up(
-        "the program is to keep its memory below 4 GB, and is position-independent: link it with -no-pie");
+        "to keep all memory below 4 GB, link the program with -no-pie: it is position-independent, so its "
+        "variables lie above");
   }
   mallopt(M_ARENA_MAX, 1);  // all of the heap lies where sbrk() makes room
   mallopt(M_MMAP_MAX, 0);

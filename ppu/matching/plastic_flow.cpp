@@ -385,8 +385,8 @@ bool PlasticFlow<kDimension>::takes_energy(std::span<const Vector> x) const {
 
 template <int kDimension>
 void PlasticFlow<kDimension>::take_back() {
-  SC_ASSERT(rest_before_.size() == rest_.size(), "a flow of {} particles, of {}", rest_before_.size(),
-            rest_.size());
+  SC_ASSERT(rest_before_.size() == rest_.size(), "the flow has {} positions from before for {} particles",
+            rest_before_.size(), rest_.size());
   rest_.swap(rest_before_);
   inverse_squares_.swap(inverse_squares_before_);
 }

@@ -139,7 +139,8 @@ TilePlan::TilePlan(const Lattice<3>& lattice, const MatchingPlan<float, 3>& matc
             particles.all_places().size(), matching.particles());
   place_of_.assign(particles.all_places().begin(), particles.all_places().end());
   SC_ASSERT(particles.size() % 4 == 0 && regions.size() % 4 == 0,
-            "{} places of particles and {} of regions, no groups of four", particles.size(), regions.size());
+            "{} places of particles and {} of regions are not multiples of 4", particles.size(),
+            regions.size());
   rest_.resize(particles.size() / 4);
   weights_.resize(rest_.size());
   for (std::uint32_t i = 0; i < matching.particles(); ++i) {

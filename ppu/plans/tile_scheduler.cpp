@@ -273,8 +273,8 @@ void TileScheduler::append_list(int kind, const Block& block, std::vector<std::u
 
 spu::TileSlice TileScheduler::written(const Slice& slice) {
   SC_ASSERT(slice.blocks[kInput].size % 4 == 0 && (slice.output.end - slice.output.begin) % 4 == 0,
-            "a slice fetches {} places and writes {}, no groups of four", slice.blocks[kInput].size,
-            slice.output.end - slice.output.begin);
+            "a slice fetches {} places and writes {}, which are not multiples of 4",
+            slice.blocks[kInput].size, slice.output.end - slice.output.begin);
   spu::TileSlice result{};
   result.input = slice.first_place;
   result.input_groups = slice.blocks[kInput].size / 4;

@@ -22,7 +22,7 @@ class GlObject {
 
   GlObject() = default;
   GlObject(const GladGLContext& gl, GLuint name, Destroy destroy) : gl_(&gl), name_(name), destroy_(destroy) {
-    SC_ASSERT(destroy != nullptr, "nothing deletes GL object {}", name);
+    SC_ASSERT(destroy != nullptr, "GL object {} has no function that deletes it", name);
   }
   ~GlObject() {
     if (name_ != 0) destroy_(*gl_, name_);

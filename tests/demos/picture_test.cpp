@@ -191,7 +191,7 @@ TEST_F(PictureScenes, RefuseBadPicturesInOneSentence) {
   EXPECT_NE(
       error_of_scene("image = 'cat.png'\nrows = ['#']").find("has several of rows, shape, lattice and image"),
       std::string::npos);
-  EXPECT_NE(error_of_scene("rows = ['#']\ncell_size = 1\nlongest_side = 2").find("which is of an image"),
+  EXPECT_NE(error_of_scene("rows = ['#']\ncell_size = 1\nlongest_side = 2").find("which only an image has"),
             std::string::npos);
   EXPECT_NE(error_of_scene("image = 'cat.png'\nlongest_side = 0.001").find("no smaller than 0.001"),
             std::string::npos);

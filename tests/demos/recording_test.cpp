@@ -6,17 +6,26 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
 #include <filesystem>
+#include <functional>
+#include <initializer_list>
 #include <limits>
+#include <map>
+#include <memory>
 #include <optional>
 #include <random>
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
+#include <utility>
+#include <variant>
 #include <vector>
 
 #include "input/input_log.h"
 #include "random_events.h"
+#include "scene/scene_hash.h"
 #include "scene_file/scene_library.h"
 #include "simulation/simulation_2d.h"
 #include "simulation/simulation_3d.h"
@@ -360,18 +369,211 @@ TEST(Recording, ThatIsFullIsGivenUp) {
   EXPECT_TRUE(std::filesystem::is_empty(scratch.path()));
 }
 
-TEST(SceneHash, DependsOnEachPartOfTheSimulation) {
+/// A part of a scene, and a change of it.
+template <class AScene>
+struct SceneChange {
+  const char* part;
+  std::function<void(AScene&)> change;
+};
+
+/// Expects that each change gives the scene another hash, which no other change gives.
+template <class AScene>
+void expect_other_hashes(const AScene& scene, const std::vector<SceneChange<AScene>>& changes) {
+  std::map<std::uint64_t, const char*> seen{{scene_hash(scene), "the scene itself"}};
+  for (const SceneChange<AScene>& each : changes) {
+    AScene other = scene;
+    each.change(other);
+    const auto [place, is_new] = seen.emplace(scene_hash(other), each.part);
+    EXPECT_TRUE(is_new) << each.part << " has the hash of " << place->second;
+  }
+}
+
+/// What scenes of both dimensions have.
+template <class AScene>
+std::vector<SceneChange<AScene>> common_changes() {
+  constexpr int kDimension = std::is_same_v<AScene, Scene> ? 3 : 2;
+  const auto change_begin = [](AScene& s, const auto& change) {
+    auto begin = std::make_shared<Beginning<kDimension>>();
+    begin->soft_bodies.resize(1);
+    begin->rigid_bodies.resize(1);
+    begin->pins.resize(1);
+    change(*begin);
+    s.begin = begin;
+  };
+  std::vector<SceneChange<AScene>> changes{
+      {"gravity", [](AScene& s) { s.gravity += 1; }},
+      {"friction", [](AScene& s) { s.friction += 0.1f; }},
+      {"restitution", [](AScene& s) { s.restitution += 0.1f; }},
+      {"substeps", [](AScene& s) { s.substeps += 1; }},
+      {"contacts", [](AScene& s) { s.contacts = ppu::ContactMethod::kSpheres; }},
+      {"sleep", [](AScene& s) { s.sleep = !s.sleep; }},
+      {"number of soft bodies", [](AScene& s) { s.soft_bodies.push_back(s.soft_bodies.front()); }},
+      {"position of a soft body", [](AScene& s) { s.soft_bodies[0].position.x() += 1e-6f; }},
+      {"strength of a soft body", [](AScene& s) { s.soft_bodies[0].strengths.emplace_back(); }},
+      {"attachment", [](AScene& s) { s.attachments.emplace_back(); }},
+      {"cut", [](AScene& s) { s.cuts.emplace_back(); }},
+      {"begin", [=](AScene& s) { change_begin(s, [](auto&) {}); }},
+      {"gravity of begin",
+       [=](AScene& s) { change_begin(s, [](auto& b) { b.gravity.emplace().setOnes(); }); }},
+      {"tilt of begin", [=](AScene& s) { change_begin(s, [](auto& b) { b.tilt.emplace().setOnes(); }); }},
+      {"time_scale of begin", [=](AScene& s) { change_begin(s, [](auto& b) { b.time_scale = 2; }); }},
+      {"frames of begin", [=](AScene& s) { change_begin(s, [](auto& b) { b.frames = 7; }); }},
+      {"seconds of begin", [=](AScene& s) { change_begin(s, [](auto& b) { b.seconds = 7; }); }},
+      {"ended attachment", [=](AScene& s) { change_begin(s, [](auto& b) { b.ended_attachments = {3}; }); }},
+      {"pin", [=](AScene& s) { change_begin(s, [](auto& b) { b.pins[0].radius = 1; }); }},
+      {"pinned particle", [=](AScene& s) { change_begin(s, [](auto& b) { b.pins[0].particles = {1}; }); }},
+      {"velocity of begin",
+       [=](AScene& s) { change_begin(s, [](auto& b) { b.rigid_bodies[0].velocity.x() = 1; }); }},
+      {"rest of begin",
+       [=](AScene& s) { change_begin(s, [](auto& b) { b.soft_bodies[0].rest.emplace_back().setOnes(); }); }},
+  };
+  using Settings = ppu::SoftBodySettings;
+  for (const auto& [part, change] : std::initializer_list<std::pair<const char*, void (*)(Settings&)>>{
+           {"cell_size", [](Settings& s) { s.cell_size *= 2; }},
+           {"half_width", [](Settings& s) { s.half_width += 1; }},
+           {"density", [](Settings& s) { s.density *= 2; }},
+           {"alpha", [](Settings& s) { s.alpha *= 0.5f; }},
+           {"damping", [](Settings& s) { s.damping += 0.1f; }},
+           {"friction of a soft body", [](Settings& s) { s.friction += 0.1f; }},
+           {"restitution of a soft body", [](Settings& s) { s.restitution += 0.1f; }},
+           {"contacts of a soft body", [](Settings& s) { s.contacts = !s.contacts; }},
+           {"frequency", [](Settings& s) { s.frequency = 2.0f; }},
+           {"damping_time", [](Settings& s) { s.damping_time = 3.0f; }},
+           {"plasticity", [](Settings& s) { s.plasticity = ppu::Plasticity{}; }},
+           {"yield", [](Settings& s) { s.plasticity = ppu::Plasticity{.yield = 0.2f}; }},
+           {"creep", [](Settings& s) { s.plasticity = ppu::Plasticity{.creep = 3}; }},
+           {"limit", [](Settings& s) { s.plasticity = ppu::Plasticity{.limit = 2}; }},
+           {"fracture", [](Settings& s) { s.fracture = ppu::Fracture{}; }},
+           {"stretch", [](Settings& s) { s.fracture = ppu::Fracture{.stretch = 0.1f}; }},
+           {"turn", [](Settings& s) { s.fracture = ppu::Fracture{.turn = 0.1f}; }},
+           {"least_cells", [](Settings& s) { s.fracture = ppu::Fracture{.least_cells = 3}; }}})
+    changes.push_back({part, [function = change](AScene& s) { function(s.soft_bodies[0].settings); }});
+  using Attachment = AttachmentPlacement<kDimension>;
+  for (const auto& [part, change] : std::initializer_list<std::pair<const char*, void (*)(Attachment&)>>{
+           {"attached body", [](Attachment& a) { a.body = 1; }},
+           {"other body", [](Attachment& a) { a.other = 1; }},
+           {"box", [](Attachment& a) { a.box = 1; }},
+           {"rigid body", [](Attachment& a) { a.rigid = 1; }},
+           {"at", [](Attachment& a) { a.at.setOnes(); }},
+           {"radius", [](Attachment& a) { a.radius = 1; }},
+           {"other_at", [](Attachment& a) { a.other_at.setOnes(); }},
+           {"other_radius", [](Attachment& a) { a.other_radius = 1; }},
+           {"kind", [](Attachment& a) { a.settings.kind = ppu::AttachmentKind::kRope; }},
+           {"point", [](Attachment& a) { a.settings.point.emplace().setOnes(); }},
+           {"axis", [](Attachment& a) { a.settings.axis = -a.settings.axis; }},
+           {"length", [](Attachment& a) { a.settings.length = 1.0f; }},
+           {"compliance", [](Attachment& a) { a.settings.compliance = 1; }},
+           {"break_force", [](Attachment& a) { a.settings.break_force = 1; }},
+           {"touch", [](Attachment& a) { a.settings.touch = true; }}})
+    changes.push_back({part, [function = change](AScene& s) { function(s.attachments.emplace_back()); }});
+  return changes;
+}
+
+TEST(SceneHash, DependsOnEachPartOfTheSimulation2d) {
   const Scene2d scene = std::get<Scene2d>(parse_scene(kScene2d, "s.toml"));
-  std::vector<Scene2d> others(8, scene);
-  others[0].gravity += 1;
-  others[1].substeps += 1;
-  others[2].friction += 0.1f;
-  others[3].soft_bodies[0].cells.pop_back();
-  others[4].soft_bodies[0].position.x() += 1e-6f;
-  others[5].rigid_bodies.back().angle += 0.1f;
-  others[6].soft_bodies[0].settings.frequency = 2.0f;
-  others[7].rigid_bodies.back().shape = CircleShape{};
-  for (std::size_t i = 0; i < others.size(); ++i) EXPECT_NE(scene_hash(others[i]), scene_hash(scene)) << i;
+  std::vector<SceneChange<Scene2d>> changes = common_changes<Scene2d>();
+  for (const SceneChange<Scene2d>& each : std::vector<SceneChange<Scene2d>>{
+           {"cells", [](Scene2d& s) { s.soft_bodies[0].cells.pop_back(); }},
+           {"contact_radius", [](Scene2d& s) { s.soft_bodies[0].contact_radius += 0.1f; }},
+           {"wall", [](Scene2d& s) { s.rigid_bodies.pop_back(); }},
+           {"circle", [](Scene2d& s) { s.rigid_bodies.back().shape = CircleShape{}; }},
+           {"radius of a circle", [](Scene2d& s) { s.rigid_bodies.back().shape = CircleShape{2}; }},
+           {"polygon", [](Scene2d& s) { s.rigid_bodies.back().shape = PolygonShape{}; }},
+           {"mass", [](Scene2d& s) { s.rigid_bodies.back().mass = 1; }},
+           {"position of a rigid body", [](Scene2d& s) { s.rigid_bodies.back().position.x() += 1e-6f; }},
+           {"angle", [](Scene2d& s) { s.rigid_bodies.back().angle += 0.1f; }},
+           {"has_end", [](Scene2d& s) { s.cuts.emplace_back().where.has_end = false; }},
+           {"time of a cut", [](Scene2d& s) { s.cuts.emplace_back().time = 3; }},
+           {"body of a cut", [](Scene2d& s) { s.cuts.emplace_back().body = 3; }},
+           {"way of a cut", [](Scene2d& s) {
+              s.cuts.emplace_back().where.way = {3, 4};
+            }}})
+    changes.push_back(each);
+  expect_other_hashes(scene, changes);
+}
+
+TEST(SceneHash, DependsOnEachPartOfTheSimulation3d) {
+  const Scene scene = std::get<Scene>(parse_scene(
+      "[framework]\nhalf_width = 3\n[[soft_body]]\nname = \"a\"\nposition = [0, 1, 0]\ncell_size = 0.4\n"
+      "shape = { kind = \"box\", size = [1, 1, 1] }\n[[obstacle]]\nposition = [2, 1, 0]\n"
+      "shape = { kind = \"box\", size = [1, 1, 1] }\n",
+      "s.toml"));
+  ASSERT_FALSE(scene.obstacles.empty());
+  const auto change_body = [](Scene& s, const auto& change) {
+    RigidBody& body = s.rigid_bodies.emplace_back();
+    body.parts.emplace_back();
+    change(body);
+  };
+  const auto change_motion = [=](Scene& s, const auto& change) {
+    change_body(s, [&](RigidBody& body) { change(body.motion.emplace()); });
+  };
+  const Eigen::Quaternionf turned(0, 1, 0, 0);
+  std::vector<SceneChange<Scene>> changes = common_changes<Scene>();
+  for (const SceneChange<Scene>& each : std::vector<SceneChange<Scene>>{
+           {"mesh", [](Scene& s) { s.soft_bodies[0].mesh.positions[0].x() += 0.1f; }},
+           {"triangles", [](Scene& s) { s.soft_bodies[0].mesh.triangles.pop_back(); }},
+           {"twist", [](Scene& s) { s.soft_bodies[0].twist = 1; }},
+           {"wall", [](Scene& s) { s.boxes.pop_back(); }},
+           {"size of a box", [](Scene& s) { s.boxes[0].size.x() += 1; }},
+           {"mass of a box", [](Scene& s) { s.boxes[0].mass = 1; }},
+           {"position of a box", [](Scene& s) { s.boxes[0].position.x() += 1; }},
+           {"rotation of a box", [=](Scene& s) { s.boxes[0].rotation = turned; }},
+           {"mesh of an obstacle", [](Scene& s) { s.obstacles[0].mesh.positions[0].x() += 0.1f; }},
+           {"position of an obstacle", [](Scene& s) { s.obstacles[0].position.x() += 1; }},
+           {"tilt", [](Scene& s) { s.tilt.amplitude_x = 1; }},
+           {"tilt about z", [](Scene& s) { s.tilt.amplitude_z = 1; }},
+           {"period_x", [](Scene& s) { s.tilt.period_x = 2; }},
+           {"period_z", [](Scene& s) { s.tilt.period_z = 2; }},
+           {"begin of the tilt", [](Scene& s) { s.tilt.begin = 1; }},
+           {"rigid body", [=](Scene& s) { change_body(s, [](RigidBody&) {}); }},
+           {"parts", [=](Scene& s) { change_body(s, [](RigidBody& b) { b.parts.emplace_back(); }); }},
+           {"kind of a part",
+            [=](Scene& s) {
+              change_body(s, [](RigidBody& b) { b.parts[0].shape.kind = ppu::RigidShapeKind::kCone; });
+            }},
+           {"size of a part", [=](Scene& s) { change_body(s, [](RigidBody& b) { b.parts[0].shape.size.x() = 2; }); }},
+           {"radius of a part", [=](Scene& s) { change_body(s, [](RigidBody& b) { b.parts[0].shape.radius = 2; }); }},
+           {"height of a part", [=](Scene& s) { change_body(s, [](RigidBody& b) { b.parts[0].shape.height = 2; }); }},
+           {"position of a part",
+            [=](Scene& s) { change_body(s, [](RigidBody& b) { b.parts[0].shape.position.x() = 2; }); }},
+           {"rotation of a part",
+            [=](Scene& s) { change_body(s, [=](RigidBody& b) { b.parts[0].shape.rotation = turned; }); }},
+           {"mass", [=](Scene& s) { change_body(s, [](RigidBody& b) { b.mass = 1; }); }},
+           {"position of a rigid body", [=](Scene& s) { change_body(s, [](RigidBody& b) { b.position.x() = 1; }); }},
+           {"rotation of a rigid body", [=](Scene& s) { change_body(s, [=](RigidBody& b) { b.rotation = turned; }); }},
+           {"friction of a rigid body", [=](Scene& s) { change_body(s, [](RigidBody& b) { b.friction = 1.0f; }); }},
+           {"motion", [=](Scene& s) { change_motion(s, [](Motion&) {}); }},
+           {"axis of a motion", [=](Scene& s) { change_motion(s, [](Motion& m) { m.axis = {1, 0, 0}; }); }},
+           {"spin", [=](Scene& s) { change_motion(s, [](Motion& m) { m.spin = 1; }); }},
+           {"swing", [=](Scene& s) { change_motion(s, [](Motion& m) { m.swing = {1, 0, 0}; }); }},
+           {"period", [=](Scene& s) { change_motion(s, [](Motion& m) { m.period = 2; }); }},
+           {"stop", [=](Scene& s) { change_motion(s, [](Motion& m) { m.stops = {{.time = 1}}; }); }},
+           {"angle of a stop", [=](Scene& s) { change_motion(s, [](Motion& m) { m.stops = {{.angle = 1}}; }); }},
+           {"joint", [](Scene& s) { s.joints = {Joint{}}; }},
+           {"body of a joint", [](Scene& s) { s.joints = {{.a = 1}}; }},
+           {"other body of a joint", [](Scene& s) { s.joints = {{.b = 1}}; }},
+           {"point of a joint", [](Scene& s) { s.joints = {{.point = {1, 0, 0}}}; }},
+           {"axis of a joint", [](Scene& s) { s.joints = {{.axis = {0, 1, 0}}}; }},
+           {"speed of a joint", [](Scene& s) { s.joints = {{.speed = 1}}; }},
+           {"torque of a joint", [](Scene& s) { s.joints = {{.torque = 1}}; }},
+           {"has_end", [](Scene& s) { s.cuts.emplace_back().where.has_end = false; }},
+           {"time of a cut", [](Scene& s) { s.cuts.emplace_back().time = 3; }},
+           {"body of a cut", [](Scene& s) { s.cuts.emplace_back().body = 3; }},
+           {"corner of a cut", [](Scene& s) { s.cuts.emplace_back().where.corner = {3, 4, 5}; }}})
+    changes.push_back(each);
+  expect_other_hashes(scene, changes);
+}
+
+/// Recordings replay in scenes that only look different.
+TEST(SceneHash, DependsOnNothingElse) {
+  const Scene2d scene = std::get<Scene2d>(parse_scene(kScene2d, "s.toml"));
+  Scene2d other = scene;
+  other.name = other.title = other.soft_bodies[0].name = "other";
+  other.camera.height += 1;
+  other.script = {};
+  other.frames += 1;
+  other.soft_bodies[0].colour = other.rigid_bodies[0].colour = {0, 0, 0};
+  EXPECT_EQ(scene_hash(other), scene_hash(scene));
 }
 
 }  // namespace

@@ -237,7 +237,7 @@ TEST(Attachments2d, AreReadAndHoldAndSayWhatIsWrong) {
     EXPECT_NE(said.find(sentence), std::string::npos) << "'" << said << "' in place of '" << sentence << "'";
   };
   says(world + "rigid = \"hock\"\n", "there is no rigid body 'hock'; did you mean 'hook'?");
-  says(world + "rigid = \"hook\"\nto = \"lamp\"\n", "has several of to and rigid; it may have one of them");
+  says(world + "rigid = \"hook\"\nto = \"lamp\"\n", "has to and rigid; give only one of to and rigid");
   says(world + "kind = \"rope\"\n", "it needs the point of its other end");
   says("dimension = 2\n[[box]]\nname = \"a\"\nsize = [1, 1]\n[[circle]]\nname = \"a\"\nradius = 1\n",
        "has the name of another rigid body, 'a'");

@@ -584,24 +584,30 @@ TEST(StateFile, RefusesWithTheLine) {
   for (const auto& [lines, expected] : std::vector<Case>{
            {"softcell state 2\n", "line 1: no saved state"},
            {"softcell state 1\ndimension 3\n", "line 2: expected 'dimension 2'"},
-           {head + "soft_body 2\n1 2 3 4\n", "line 5: expected a number"},
-           {head + "soft_body 1\n1 2 3\n", "line 4: expected a number"},
-           {head + "soft_body 1\n1 2 3 4 5\n", "line 4: the line has more"},
-           {head + "soft_body 1\n1 2 nan 4\n", "line 4: expected a number"},
-           {head + "soft_body 1\n20000 2 3 4\n", "line 4: expected a number from -10000 to 10000"},
-           {head + "soft_body -1\n", "line 3: the number of particles must be a whole number"},
-           {head + "soft_body 4000000000\n", "line 3: the number of particles must be a whole number"},
+           {head + "soft_body 2\n1 2 3 4\n",
+            "line 5: a particle's position is 'end'; it must be a number from -10000"},
+           {head + "soft_body 1\n1 2 3\n",
+            "line 4: a particle's velocity is ''; it must be a number from -100000"},
+           {head + "soft_body 1\n1 2 3 4 5\n", "line 4: '5' was not expected here"},
+           {head + "soft_body 1\n1 2 nan 4\n", "line 4: a particle's velocity is 'nan'; it must be a number"},
+           {head + "soft_body 1\n20000 2 3 4\n",
+            "line 4: a particle's position is '20000'; it must be a number from -10000 to 10000"},
+           {head + "soft_body -1\n",
+            "line 3: the number of particles is '-1'; it must be a whole number from 0 to 300000"},
+           {head + "soft_body 4000000000\n",
+            "line 3: the number of particles is '4000000000'; it must be a whole"},
            {head + "rigid_body 3 1 2 3 4 5 6\nrigid_body 3 1 2 3 4 5 6\n",
             "line 4: rigid bodies must be in ascending"},
            {head + "rest_shape\n1 2\n", "line 3: a rest shape must follow"},
            {head + "soft_body 1\n1 2 3 4\nrest_shape\n1 2\nrest_shape\n1 2\n",
             "line 7: a rest shape must follow"},
-           {head + "soft_body 1\n1 2 3 4\nrest_shape\n1\n", "line 6: expected a number"},
-           {head + "soft_body 1\n1 2 3 4\nrest_shape\n1 2 3\n", "line 6: the line has more"},
+           {head + "soft_body 1\n1 2 3 4\nrest_shape\n1\n",
+            "line 6: a position at rest is ''; it must be a number"},
+           {head + "soft_body 1\n1 2 3 4\nrest_shape\n1 2 3\n", "line 6: '3' was not expected here"},
            {head + "ended_attachment 3\nended_attachment 2\n", "line 4: attachments must be in ascending"},
            {head + "pin 0 0 0 1 0\n", "line 3: a pin of soft body 0; there are 0"},
            {head + "soft_body 2\n1 2 3 4\n1 2 3 4\npin 0 0 0 0 1\n",
-            "line 6: the radius of a pin must be above 0"},
+            "line 6: a pin's radius is 0; it must be above 0"},
            {head + "soft_body 2\n1 2 3 4\n1 2 3 4\npin 0 0 0 1\n", "line 6: a pin needs particles"},
            {head + "soft_body 2\n1 2 3 4\n1 2 3 4\npin 0 0 0 1 2\n",
             "line 6: a pin of particle 2; the soft body has 2"},
@@ -620,7 +626,7 @@ TEST(StateFile, RefusesWithTheLine) {
   };
   EXPECT_EQ(plain(head), "line 3: the file ends here; expected 'end' and the checksum");
   EXPECT_EQ(plain(head + "end 0123456789abcdef\n"),
-            "line 3: the checksum is another: the file was changed, or a part of it is missing");
+            "line 3: the checksum is wrong: the file was changed, or a part of it is missing");
 }
 
 TEST_F(SaveScene, FindsAFreeNameBesideTheScene) {

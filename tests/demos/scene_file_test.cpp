@@ -417,8 +417,7 @@ TEST_F(SceneFile, AttachmentsAreReadAndCheckedByName) {
   says("body = \"c\"\n", "there is no soft body 'c'");
   says("body = \"a\"\nto = \"c\"\n", "there is no soft body 'c'");
   says("body = \"a\"\nto = \"a\"\n", "attach 1 attaches 'a' to itself");
-  says("body = \"a\"\nto = \"b\"\nbox = 1\n",
-       "attach 1 has several of to, box and rigid; it may have one of them");
+  says("body = \"a\"\nto = \"b\"\nbox = 1\n", "attach 1 has to and box; give only one of to, box and rigid");
   says("body = \"a\"\nbox = 2\n", "box of attach 1 is 2; it must be a whole number from 1 to 1");
   says("body = \"a\"\nkind = \"glue\"\n", "it must be one of weld, hinge, rope");
   says("body = \"a\"\nkind = \"rope\"\n",

@@ -203,7 +203,7 @@ TEST_F(ReservationsTest, SmallCopiesMoveTheirBytesAndNoOthers) {
   }
 }
 
-TEST_F(ReservationsTest, HasRoomForThirtyTwoHolders) {
+TEST_F(ReservationsTest, HasRoomForAsManyHoldersAsStated) {
   std::vector<std::unique_ptr<ReservationHolder>> more;
   for (int i = 2; i < Reservations::kMaxHolders; ++i) {
     more.push_back(std::make_unique<ReservationHolder>(reservations_));

@@ -139,16 +139,45 @@ TEST_F(HostCallsTest, FormatsIntoTheLocalStore) {
 }
 
 TEST_F(HostCallsTest, HostileFormatsEnd) {
-  for (const std::string& format :
-       {std::string(5000, '%'), std::string("%99999999d"), std::string("%.99999999f"), std::string("%"),
-        std::string("%l"), std::string("%n%Q"), std::string(3000, '#')}) {
+  using namespace std::string_literals;
+  constexpr std::size_t kMostWidth = 4096;  // and the most digits; the arguments are 0
+  const std::pair<std::string, std::string> formats[] = {
+      {std::string(5000, '%'), std::string(2500, '%')},
+      {"%99999999d", std::string(kMostWidth - 1, ' ') + "0"},
+      {"%*d", "0"},
+      {"%.99999999f", "0." + std::string(kMostWidth, '0')},
+      {"%", "%"},
+      {"%l", "%l"},
+      {"ab%n%Q", "ab%Q"},
+      {std::string(3000, '#'), std::string(3000, '#')}};
+  for (const auto& [format, expected] : formats) {
+    printed_.clear();
     set_argument(0, text(format));
     set_argument(1, kVariable);
     set_argument(2, 0);
-    serve(kC99Call, 37);
+    std::vector<std::byte> before = local_store_;
+    EXPECT_EQ(serve(kC99Call, 37), static_cast<std::int32_t>(expected.size())) << format.substr(0, 20);
+    EXPECT_EQ(printed_, expected);
+    // Only the result, and where %n points: to 0.
+    std::copy_n(local_store_.begin() + kArguments, 16, before.begin() + kArguments);
+    if (format.find("%n") != std::string::npos) {
+      EXPECT_EQ(memory_.word(0), 2u);
+      memory_.set_word(0, 0);
+    }
+    EXPECT_TRUE(before == local_store_) << format.substr(0, 20);
   }
-  set_argument(0, dma::kLocalStoreBytes - 1);  // a text that passes the end goes on at 0
-  serve(kC99Call, 25);
+  printed_.clear();
+  memory_.set_bytes(dma::kLocalStoreBytes - 1, "xy"s);  // a text that passes the end goes on at 0
+  set_argument(0, dma::kLocalStoreBytes - 1);
+  EXPECT_EQ(serve(kC99Call, 25), 3);
+  EXPECT_EQ(printed_, "xy\n");
+}
+
+TEST_F(HostCallsTest, ATextWithoutAnEndEnds) {
+  std::fill(local_store_.begin(), local_store_.end(), std::byte{'x'});
+  set_argument(0, 0x0101'4001);  // an address that has no zero in it either
+  EXPECT_GT(serve(kC99Call, 25), 0);
+  EXPECT_EQ(printed_.size(), dma::kLocalStoreBytes + 1) << "once around the local store";
 }
 
 TEST_F(HostCallsTest, UnknownOnesFail) {

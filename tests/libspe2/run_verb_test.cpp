@@ -356,7 +356,8 @@ TEST(RunVerb, KeepsAllMemoryBelow4GB) {
   EXPECT_EQ(low.status, 0) << low.output;
   const CommandResult moving = run_softcell("run --low-memory -- " + kPingPong);
   EXPECT_EQ(moving.status, 2);
-  EXPECT_NE(moving.output.find("is position-independent: link it with -no-pie"), std::string::npos)
+  EXPECT_NE(moving.output.find("link the program with -no-pie: it is position-independent"),
+            std::string::npos)
       << moving.output;
 }
 

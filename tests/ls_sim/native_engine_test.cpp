@@ -267,6 +267,10 @@ INSTANTIATE_TEST_SUITE_P(
                   {.argp = dma::kVideoMemoryBase.value},
                   dma::Rule::kEffectiveAddressAsPointer,
                   "0xC0000000"},
+        FaultCase{"read_effective_address",
+                  {.argp = dma::kMainMemoryBase.value + 0x1000'0080},  // behind the usual main memory
+                  dma::Rule::kOutsideLocalStore,
+                  "address 0x20000080, which is neither in the local store nor an effective address"},
         FaultCase{"read_effective_address", {.argp = 0}, dma::Rule::kOutsideLocalStore, "0x00000"},
         FaultCase{"read_effective_address",
                   {.argp = 0xEA00'0000'0000'0000},  // a pointer keeps only the low 32 bits

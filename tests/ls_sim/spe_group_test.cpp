@@ -278,10 +278,27 @@ TEST_F(SpeGroupTest, TheDecrementerEndsASleepByItself) {
   }
 }
 
-TEST_F(SpeGroupTest, HoursOfSimulatedTimePassAtOnce) {
-  SpeGroup group(memory_, {.spes = 1, .clock = Clock::kSimulated});
+TEST_F(SpeGroupTest, AnEffectiveAddressAboveTheUsualMainMemoryIsNamedAsOne) {
+  dma::AddressSpace large(std::uint64_t{1} << 30);
+  SpeGroup group(large, {.spes = 1});
+  const KernelImage image = test_image("read_effective_address");
+  // Below 1 GB, from where on the host maps what asks for a low address.
+  for (const std::uint64_t offset : {0x80u, 0x1000'0080u, 0x2FFF'FF80u}) {
+    group.start(0, image, {.argp = dma::kMainMemoryBase.value + offset});
+    const RunResult result = group.wait(0);
+    ASSERT_TRUE(result.fault) << offset;
+    EXPECT_EQ(result.fault->rule, dma::Rule::kEffectiveAddressAsPointer) << result.fault->message();
+  }
+}
+
+TEST_F(SpeGroupTest, AMinuteOfSimulatedTimePassesAtOnce) {
+  SpeGroup group(memory_, {.spes = 1, .deadline = 500ms, .clock = Clock::kSimulated});
+  const auto begin = Clock_::now();
   group.start(0, waits_, {.argp = kDecrementer, .envp = 0xFFFF'FFFE});  // 53.8 s
-  EXPECT_FALSE(group.wait(0).fault);
+  const RunResult result = group.wait(0);
+  ASSERT_FALSE(result.fault) << result.fault->message();
+  EXPECT_EQ(result.status(), kDecrementerEvent);
+  EXPECT_LT(Clock_::now() - begin, 5s) << "of the host, which may be busy";
 }
 
 class SimulatedSleep : public SpeGroupTest, public testing::WithParamInterface<Interleaving> {

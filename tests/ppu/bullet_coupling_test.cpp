@@ -325,6 +325,9 @@ TEST(BulletSoftBodies, AThrowAtAThinFloorStopsThere) {
     body.add_velocity({0, -speed, 0});
     world.run(1);
     EXPECT_GT(body.bounds().low.y(), -0.02f) << speed << " m/s";
+    world.run(24);  // it bounces, for a dozen seconds higher than itself
+    EXPECT_NEAR(body.bounds().low.y(), 0.03f, 0.01f) << "lies on the floor, after " << speed << " m/s";
+    EXPECT_LT(body.mean_speed(), 0.5f) << speed << " m/s";
   }
 }
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <limits>
 #include <memory>
+#include <stdexcept>
 #include <vector>
 
 #include "../support/contract.h"
@@ -12,6 +13,7 @@
 #include "ppu/plans/tile_places.h"
 #include "soft_body_scenes.h"
 #include "softcell/jobs/job_system.h"
+#include "softcell/soft_bodies/skin_2d.h"
 #include "softcell/soft_bodies/skinned_mesh.h"
 #include "softcell/soft_bodies/state_hash.h"
 #include "softcell/spe_bodies/spe_runtime.h"
@@ -54,6 +56,11 @@ TEST(SoftBodyContractsDeathTest, ARotationIsNoZero) {
 TEST(SoftBodyContractsDeathTest, AParticleHasANumber) {
   SoftBody<3> body(cube());
   SC_EXPECT_VIOLATES(body.add_particle_velocity(8, {1, 0, 0}), "add_particle_velocity.*: particle 8 of 8\n");
+  SC_EXPECT_VIOLATES(body.set_particle(8, {0, 0, 0}, {0, 0, 0}), "set_particle.*: particle 8 of 8\n");
+  SC_EXPECT_VIOLATES(body.set_velocity(8, {0, 0, 0}), "set_velocity.*: particle 8 of 8\n");
+  const std::vector<std::uint32_t> too_far(8, 8);
+  SC_EXPECT_VIOLATES(SoftBody<3>(cube()).inherit_state(body, too_far, {0, 0, 0}),
+                     "inherit_state.*: particle 0 of a piece is particle 8 of 8\n");
 }
 
 TEST(SoftBodyContractsDeathTest, TimeGoesForward) {
@@ -94,6 +101,29 @@ TEST(SoftBodyContractsDeathTest, AStepAheadKnowsItsBodies) {
   SC_EXPECT_VIOLATES(steps.add(body), "add.*: a body is added twice to 1\n");
   steps.begin(0.01f);
   SC_EXPECT_VIOLATES(steps.forget(body), "forget.*: a body is forgotten during its step of 0\\.01 s\n");
+}
+
+TEST(SoftBodyContractsDeathTest, ASolverDoesOneStepAtATime) {
+  SoftBody<3> body(cube());
+  const std::array<SoftBody<3>*, 1> bodies{&body};
+  PpuSolver<3> solver;
+  solver.kick(bodies, 0.01f);
+  SC_EXPECT_VIOLATES(solver.kick(bodies, 0.01f),
+                     "kick.*: kick\\(\\) of 1 bodies while a step of 1 is under way\n");
+  SC_EXPECT_VIOLATES(solver.forget(body), "forget.*: forget\\(\\) while a step of 1 bodies is under way\n");
+  body.set_particle(0, {std::numeric_limits<float>::quiet_NaN(), 0, 0}, {0, 0, 0});
+  EXPECT_THROW(solver.finish(), std::runtime_error);
+  solver.forget(body);  // the step that failed has ended
+}
+
+TEST(SoftBodyContractsDeathTest, ASkinIsPulledByParticlesOfItsBody) {
+  const std::array<Eigen::Vector2i, 1> cells{Eigen::Vector2i(0, 0)};
+  const Lattice<2> lattice = lattice_from_cells(cells, 0.1f);
+  const Skin2d skin = make_skin_2d(lattice, 0.1f);
+  const std::vector<Eigen::Vector2f> particles(3, Eigen::Vector2f::Zero());
+  std::vector<Eigen::Vector2f> positions(skin.rest.size()), slopes(skin.rest.size());
+  SC_EXPECT_VIOLATES(deform(skin, particles, positions, slopes),
+                     "deform.*: vertex .* is pulled by particle 3 of 3\n");
 }
 
 TEST(SoftBodyContractsDeathTest, ParticlesOfAPlanAreSorted) {

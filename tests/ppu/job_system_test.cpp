@@ -218,7 +218,12 @@ TEST_F(JobSystemTest, AChainGetsMoreRoomAndKeepsItsJobs) {
   JobChain chain(jobs, "grows", 2);  // the last for which there is room
   chain.add({adds, lines.ea(0)});
   chain.add({adds, lines.ea(1)});
-  EXPECT_THROW(chain.add({adds, lines.ea(2)}), std::length_error);
+  try {
+    chain.add({adds, lines.ea(2)});
+    ADD_FAILURE() << "a chain has more jobs than room";
+  } catch (const std::length_error& error) {
+    EXPECT_STREQ(error.what(), "chain 'grows' has room for 2 jobs and has 2; reserve() makes more room");
+  }
   chain.kick();
   chain.reserve(200);
   EXPECT_TRUE(chain.finished()) << "it waits for jobs under way";
@@ -758,6 +763,32 @@ TEST_F(JobSystemTest, EndsAtOnceWhateverIsUnderWay) {
     second.reset();
     first.reset();
     for (std::size_t i = 0; i < 20; ++i) ASSERT_EQ(lines[i][0], i + 1);
+  }
+}
+
+TEST_F(JobSystemTest, AKickAfterStopFailsAndDoesNotHang) {
+  for (const ls_sim::Interleaving interleaving : kInterleavings) {
+    JobSystem jobs(memory_, {.spes = 2, .interleaving = interleaving}, loop_);
+    auto lines = make_lines(2);
+    const JobImage adds = jobs.load(adds_);
+    JobChain chain(jobs, "late", 2), other(jobs, "other", 1);
+    for (std::size_t i = 0; i < 2; ++i) chain.add({adds, lines.ea(i)}), chain.sync();
+    other.add({adds, lines.ea()});
+    other.kick();
+    jobs.stop();
+    EXPECT_EQ(lines[0][0], 1u) << "what was kicked before has run";
+    for (int kick = 0; kick < 2; ++kick) {
+      chain.kick();
+      chain.wait();
+      EXPECT_TRUE(chain.finished());
+      ASSERT_EQ(chain.failures().size(), 1u);
+      EXPECT_EQ(chain.failures()[0].job, chain.size()) << "no job is to blame";
+      expect_parts(chain.failures()[0].message, {"chain 'late'", "JobSystem::stop()"});
+    }
+    other.wait();
+    expect_no_failures(other);
+    EXPECT_EQ(lines[0][0], 1u);
+    jobs.stop();  // does nothing more
   }
 }
 

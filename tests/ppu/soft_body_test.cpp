@@ -56,6 +56,40 @@ TEST(SoftBodySettings, RefuseValuesOutOfTheirRangeByName) {
   EXPECT_NE(sentence([](auto& s) { s.damping_time = -1.0f; }).find("damping_time is -1"), std::string::npos);
 }
 
+/// A message names no number that looks as if it were in the range.
+TEST(SoftBodySettings, RefuseTheNextNumberBeyondALimitInAllItsDigits) {
+  const auto sentence = [](const std::function<void(SoftBodySettings&)>& change) -> std::string {
+    SoftBodySettings settings = rubber();
+    settings.plasticity = Plasticity{};
+    settings.fracture = Fracture{};
+    change(settings);
+    try {
+      validate(settings);
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  const float above = std::nextafter(1.0f, 2.0f), below = -std::numeric_limits<float>::denorm_min();
+  const float turn = std::nextafter(3.1415927f, 4.0f);
+  EXPECT_EQ(sentence([=](auto& s) { s.alpha = above; }),
+            "a soft body's alpha is 1.0000001; it must be from 0 to 1");
+  EXPECT_EQ(sentence([=](auto& s) { s.damping = above; }),
+            "a soft body's damping is 1.0000001; it must be from 0 to 1");
+  EXPECT_EQ(sentence([=](auto& s) { s.restitution = above; }),
+            "a soft body's restitution is 1.0000001; it must be from 0 to 1");
+  EXPECT_EQ(sentence([=](auto& s) { s.plasticity->yield = above; }),
+            "a soft body's yield is 1.0000001; it must be a strain above 0 and at most 1");
+  EXPECT_EQ(sentence([=](auto& s) { s.fracture->turn = turn; }),
+            "a soft body's fracture.turn is 3.141593; it must be an angle in radians above 0 and at most pi");
+  for (const float alpha : {below, -1e-30f})
+    EXPECT_NE(sentence([=](auto& s) { s.alpha = alpha; }).find("alpha is -1e-"), std::string::npos);
+  EXPECT_EQ(
+      sentence([](auto& s) { s.density = -1; }),
+      "a soft body's density is -1; it must be a number above 0, in kg/m^3 (of a two-dimensional body in "
+      "kg/m^2)");
+}
+
 TEST(SoftBodySettings, FrequencyAndDampingTimeTakeThePlaceOfAlphaAndDamping) {
   SoftBodySettings settings = rubber();
   EXPECT_EQ(settings.alpha_of_step(0.01f), 0.5f);

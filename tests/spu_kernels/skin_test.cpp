@@ -143,6 +143,8 @@ TEST(Skin, WorksFarFromTheWorldsOrigin) {
 TEST(Skin, CutsLargeLatticesIntoJobsOfTwoWindows) {
   SkinRig rig(ppu::make_sphere(1.0f, 40), 0.05f);
   EXPECT_GT(rig.embedding->parts.size(), 6u);
+  EXPECT_TRUE(std::ranges::any_of(rig.embedding->parts,
+                                  [](const ppu::SkinPart& part) { return part.window[1].count > 0; }));
   EXPECT_GT(rig.positions.size(), std::size_t{spu::kSkinMaxCorners});
   rig.expect_oracle(2 * kUlpAtTwo, 0.02);
 }

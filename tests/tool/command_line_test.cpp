@@ -6,9 +6,12 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <cstddef>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <regex>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -72,13 +75,50 @@ std::string without_escapes(std::string text) {
   return std::regex_replace(text, escape, "");
 }
 
-TEST(ManualPage, OfTheCommandNamesEveryOptionOfEveryVerb) {
-  const std::string page = without_escapes(run_softcell("man").output);
-  for (const char* verb : {"demo 3d", "spu run", "spu explore", "spu budget", "bench", "report"}) {
-    EXPECT_NE(page.find(std::string("softcell ") + verb), std::string::npos) << verb;
-    for (const std::string& option : options_in_help(verb))
-      EXPECT_NE(page.find(option), std::string::npos) << verb << " " << option;
+/// All verbs that do something, as the help names them: "spu run".
+std::set<std::string> verbs_in_help(const std::string& verb = {}) {
+  const std::string help = run_softcell(verb + " --help").output;
+  const std::size_t begin = help.find("\nSubcommands:\n");
+  if (begin == std::string::npos) return {verb};
+  static const std::regex line("\n  ([a-z0-9]+) ");
+  std::set<std::string> verbs;
+  for (std::sregex_iterator at(help.begin() + static_cast<std::ptrdiff_t>(begin), help.end(), line), end;
+       at != end; ++at)
+    verbs.merge(verbs_in_help((verb.empty() ? "" : verb + " ") + at->str(1)));
+  return verbs;
+}
+
+/// The sections of a manual page's commands, by their verbs.
+std::map<std::string, std::string> sections_of(const std::string& page) {
+  static const std::regex heading("\n\\.S[SH] (softcell )?([^\n]*)");
+  std::map<std::string, std::string> sections;
+  std::string* section = nullptr;
+  std::size_t begin = 0;
+  const auto add_up_to = [&](std::size_t end) {
+    if (section != nullptr) *section = page.substr(begin, end - begin);
+  };
+  for (std::sregex_iterator at(page.begin(), page.end(), heading), end; at != end; ++at) {
+    add_up_to(static_cast<std::size_t>(at->position()));
+    begin = static_cast<std::size_t>(at->position() + at->length());
+    section = (*at)[1].matched ? &sections[at->str(2)] : nullptr;
   }
+  add_up_to(page.size());
+  return sections;
+}
+
+TEST(ManualPage, OfTheCommandNamesEveryOptionOfEveryVerb) {
+  const std::map<std::string, std::string> sections =
+      sections_of(without_escapes(run_softcell("man").output));
+  std::set<std::string> verbs;
+  for (const auto& [verb, section] : sections) {
+    verbs.insert(verb);
+    const std::vector<std::string> options = options_in_help(verb);
+    ASSERT_FALSE(options.empty()) << "softcell " << verb << " --help names not even --help";
+    for (const std::string& option : options)
+      EXPECT_TRUE(std::regex_search(section, std::regex(option + "(?![a-z-])"))) << verb << " " << option;
+  }
+  EXPECT_EQ(verbs, verbs_in_help());
+  EXPECT_TRUE(verbs.contains("spu run"));
 }
 
 TEST(ManualPage, SaysWhatMayBeLeftOutAndWhatMayBeRepeated) {

@@ -45,20 +45,20 @@ bool MouseHand::take(int x, int y, const Look&, std::vector<InputEvent<2>>& even
 }
 
 void MouseHand::move_to(int x, int y, const Look&, std::vector<InputEvent<2>>& events) {
-  SC_ASSERT(holds_, "hand {} moves nothing to ({}, {})", hand_, x, y);
+  SC_ASSERT(holds_, "hand {} is moved to ({}, {}) but holds no body", hand_, x, y);
   if (events.empty() || events.back().action != Action::kMoveHand || events.back().hand != hand_)
     events.push_back({.action = Action::kMoveHand, .hand = hand_});
   events.back().value = camera_.point_at(x, y, width_, height_);
 }
 
 void MouseHand::let_go(std::vector<InputEvent<2>>& events) {
-  SC_ASSERT(holds_, "hand {} lets nothing go", hand_);
+  SC_ASSERT(holds_, "hand {} lets go but holds no body", hand_);
   holds_ = false;
   events.push_back({.action = Action::kRelease, .hand = hand_});
 }
 
 void MouseHand::pin(std::vector<InputEvent<2>>& events) const {
-  SC_ASSERT(holds_, "hand {} pins nothing", hand_);
+  SC_ASSERT(holds_, "hand {} pins but holds no body", hand_);
   events.push_back({.action = Action::kPin, .hand = hand_});
 }
 

@@ -73,24 +73,24 @@ void MouseReach::move_to(int x, int y, const Look& look, std::vector<InputEvent<
 }
 
 void MouseReach::move_away(float notches, const Look& look, std::vector<InputEvent<3>>& events) {
-  SC_ASSERT(depth_, "hand {} moves nothing away by {}", hand_, notches);
+  SC_ASSERT(depth_, "hand {} is moved away by {} notches but holds no body", hand_, notches);
   depth_ = std::max(*depth_ * std::pow(kFartherPerNotch, notches), eye_(look).near_plane);
   move(look, events);
 }
 
 void MouseReach::pin(std::vector<InputEvent<3>>& events) const {
-  SC_ASSERT(depth_, "hand {} pins nothing", hand_);
+  SC_ASSERT(depth_, "hand {} pins but holds no body", hand_);
   events.push_back({.action = Action::kPin, .hand = hand_});
 }
 
 void MouseReach::let_go(std::vector<InputEvent<3>>& events) {
-  SC_ASSERT(depth_, "hand {} lets nothing go", hand_);
+  SC_ASSERT(depth_, "hand {} lets go but holds no body", hand_);
   depth_.reset();
   events.push_back({.action = Action::kRelease, .hand = hand_});
 }
 
 void MouseReach::move(const Look& look, std::vector<InputEvent<3>>& events) const {
-  SC_ASSERT(depth_, "hand {} moves nothing to ({}, {})", hand_, x_, y_);
+  SC_ASSERT(depth_, "hand {} is moved to ({}, {}) but holds no body", hand_, x_, y_);
   const render::Camera camera = eye_(look);
   const Ray ray = ray_through(camera, x_, y_, width_, height_);
   const Eigen::Vector3f forward = (camera.target - camera.eye).normalized();

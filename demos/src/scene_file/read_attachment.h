@@ -1,8 +1,12 @@
 #pragma once
 // Reads the items of `attach`, in two dimensions and three.
 
+#include <fmt/ranges.h>
+
 #include <stdexcept>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "document/field_reader.h"
 #include "read_common.h"
@@ -42,9 +46,13 @@ void read_attachment(FieldReader& fields, const SceneOf& scene, AttachmentPlacem
   settings.kind = static_cast<ppu::AttachmentKind>(kind);
   if (fields.has("point")) settings.point = point;
   if (fields.has("touch")) settings.touch = touch;
-  if (fields.has("to") + fields.has("box") + fields.has("rigid") > 1) {
-    throw SceneError(fields.place(), fmt::format("{} has several of to{} rigid; it may have one of them",
-                                                 fields.what(), kDimension == 3 ? ", box and" : " and"));
+  std::vector<std::string_view> given;
+  for (const char* const name : {"to", "box", "rigid"})
+    if (fields.has(name)) given.emplace_back(name);
+  if (given.size() > 1) {
+    throw SceneError(fields.place(),
+                     fmt::format("{} has {}; give only one of to{} rigid", fields.what(),
+                                 fmt::join(given, " and "), kDimension == 3 ? ", box and" : " and"));
   }
   if (fields.has("to")) attachment.other = find_body(other, fields.place("to"), scene);
   if (attachment.other == attachment.body)

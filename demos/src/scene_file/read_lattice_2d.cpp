@@ -193,7 +193,8 @@ void read_lattice_2d(FieldReader& fields, LatticeFiles& files, const OwnPictureP
                                          " rows, shape, lattice and image" +
                                          (given == 0 ? "" : "; it may have one of them"));
   if (longest_side && !fields.has("image"))
-    throw SceneError(fields.place("longest_side"), fields.what() + " has longest_side, which is of an image");
+    throw SceneError(fields.place("longest_side"),
+                     fields.what() + " has longest_side, which only an image has");
   const auto from_picture = [&](std::shared_ptr<const render::Image> picture, float side, double cells,
                                 const Place& place) {
     try {

@@ -15,6 +15,7 @@
 #include "document/field_reader.h"
 #include "read_common.h"
 #include "softcell/base/assert.h"
+#include "softcell/base/text.h"
 
 namespace softcell::demos {
 namespace {
@@ -90,25 +91,28 @@ class StateReader {
     std::uint32_t value = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (error != std::errc() || end != text.data() + text.size() || value > most)
-      refuse(fmt::format("{} must be a whole number from 0 to {}", name, most));
+      refuse(fmt::format("{} is '{}'; it must be a whole number from 0 to {}", name, quotable(text), most));
     return value;
   }
-  float number(double most) {
+  float number(std::string_view name, double most) {
     const std::string_view text = word();
     float value = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (error != std::errc() || end != text.data() + text.size() || !(std::abs(double{value}) <= most))
-      refuse(fmt::format("expected a number from {} to {}", -most, most));
+      refuse(fmt::format("{} is '{}'; it must be a number from {} to {}", name, quotable(text), -most, most));
     return value;
   }
   void end_line() const {
-    if (!line_.empty()) refuse("the line has more than it should");
+    if (!line_.empty()) refuse(fmt::format("'{}' was not expected here", quotable(line_)));
   }
   bool is_last() const { return at_ >= text_.size(); }
   std::string_view rest() const { return line_; }
   std::string_view before_line() const { return text_.substr(0, line_begin_); }
 
  private:
+  /// Text from the file in a form that fits into a message.
+  static std::string quotable(std::string_view found) { return base::one_line(found.substr(0, 40)); }
+
   std::string_view text_, line_;
   std::size_t at_ = 0, line_begin_ = 0;
   int number_ = 0;
@@ -121,8 +125,9 @@ typename Beginning<Dimension>::SoftBody read_particles(StateReader& reader, std:
     reader.require_line("a particle");
     auto& x = body.positions.emplace_back();
     auto& v = body.velocities.emplace_back();
-    for (int axis = 0; axis < Dimension; ++axis) x[axis] = reader.number(kFar);
-    for (int axis = 0; axis < Dimension; ++axis) v[axis] = reader.number(kMaxStateSpeed);
+    for (int axis = 0; axis < Dimension; ++axis) x[axis] = reader.number("a particle's position", kFar);
+    for (int axis = 0; axis < Dimension; ++axis)
+      v[axis] = reader.number("a particle's velocity", kMaxStateSpeed);
     reader.end_line();
   }
   return body;
@@ -133,7 +138,7 @@ void read_rest(StateReader& reader, typename Beginning<Dimension>::SoftBody& bod
   for (std::size_t i = 0; i < body.positions.size(); ++i) {
     reader.require_line("a particle's position at rest");
     auto& x = body.rest.emplace_back();
-    for (int axis = 0; axis < Dimension; ++axis) x[axis] = reader.number(kFar);
+    for (int axis = 0; axis < Dimension; ++axis) x[axis] = reader.number("a position at rest", kFar);
     reader.end_line();
   }
 }
@@ -146,9 +151,9 @@ typename Beginning<Dimension>::Pin read_pin(
   if (pin.body >= bodies.size())
     reader.refuse(
         fmt::format("a pin of soft body {}; there are {}, counted from 0", pin.body, bodies.size()));
-  for (int axis = 0; axis < Dimension; ++axis) pin.point[axis] = reader.number(kFar);
-  pin.radius = reader.number(kFar);
-  if (!(pin.radius > 0)) reader.refuse("the radius of a pin must be above 0");
+  for (int axis = 0; axis < Dimension; ++axis) pin.point[axis] = reader.number("a pin's point", kFar);
+  pin.radius = reader.number("a pin's radius", kFar);
+  if (!(pin.radius > 0)) reader.refuse(fmt::format("a pin's radius is {}; it must be above 0", pin.radius));
   const std::size_t count = bodies[pin.body].positions.size();
   while (!reader.rest().empty()) {
     const std::uint32_t particle = reader.whole("a pin's particle", kMaxParticlesOfScene);
@@ -167,21 +172,25 @@ template <int Dimension>
 typename Beginning<Dimension>::RigidBody read_rigid(StateReader& reader) {
   typename Beginning<Dimension>::RigidBody body;
   body.body = reader.whole("the number of a rigid body", static_cast<std::uint32_t>(4 * kMaxRigidBodies));
-  for (int axis = 0; axis < Dimension; ++axis) body.position[axis] = reader.number(kFar);
+  for (int axis = 0; axis < Dimension; ++axis)
+    body.position[axis] = reader.number("a rigid body's position", kFar);
   if constexpr (Dimension == 3) {
-    const float w = reader.number(1.01), x = reader.number(1.01), y = reader.number(1.01),
-                z = reader.number(1.01);
+    const auto component = [&reader] { return reader.number("a rigid body's rotation", 1.01); };
+    const float w = component(), x = component(), y = component(), z = component();
     body.rotation = Eigen::Quaternionf(w, x, y, z);
     if (!(std::abs(body.rotation.norm() - 1) < 1e-3f))
-      reader.refuse("a rotation must be a quaternion of length 1");
+      reader.refuse(fmt::format("a rigid body's rotation is a quaternion of length {}; it must be 1",
+                                body.rotation.norm()));
   } else {
-    body.rotation = reader.number(kMaxStateSpeed);
+    body.rotation = reader.number("a rigid body's angle", kMaxStateSpeed);
   }
-  for (int axis = 0; axis < Dimension; ++axis) body.velocity[axis] = reader.number(kMaxStateSpeed);
+  for (int axis = 0; axis < Dimension; ++axis)
+    body.velocity[axis] = reader.number("a rigid body's velocity", kMaxStateSpeed);
+  const auto angular = [&reader] { return reader.number("a rigid body's angular velocity", kMaxStateSpeed); };
   if constexpr (Dimension == 3) {
-    for (int axis = 0; axis < 3; ++axis) body.angular_velocity[axis] = reader.number(kMaxStateSpeed);
+    for (int axis = 0; axis < 3; ++axis) body.angular_velocity[axis] = angular();
   } else {
-    body.angular_velocity = reader.number(kMaxStateSpeed);
+    body.angular_velocity = angular();
   }
   reader.end_line();
   return body;
@@ -285,7 +294,7 @@ Beginning<Dimension> parse_state(std::string_view text) {
     } else if (kind == "end") {
       if (!reader.is_last()) reader.refuse("expected nothing behind the line 'end'");
       if (reader.rest() != fmt::format("{:016x}", state_checksum(reader.before_line())))
-        reader.refuse("the checksum is another: the file was changed, or a part of it is missing");
+        reader.refuse("the checksum is wrong: the file was changed, or a part of it is missing");
       return moment;
     } else {
       reader.refuse("expected soft_body, rest_shape, rigid_body, ended_attachment, pin or end");

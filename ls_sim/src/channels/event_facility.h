@@ -6,14 +6,15 @@
 #include <utility>
 
 #include "softcell/base/assert.h"
+#include "softcell/dma/mfc.h"
 
 namespace softcell::ls_sim {
 
 /// Bits of SPU_RdEventStat, SPU_WrEventMask and SPU_WrEventAck. [CBEA, SPU events] documented
 namespace event {
-inline constexpr std::uint32_t kTagStatus = 0x1;              ///< TG
-inline constexpr std::uint32_t kListStall = 0x2;              ///< SN
-inline constexpr std::uint32_t kQueueSlot = 0x8;              ///< QV
+inline constexpr std::uint32_t kTagStatus = dma::Mfc::kTagStatusEvent;  ///< TG
+inline constexpr std::uint32_t kListStall = dma::Mfc::kListStallEvent;  ///< SN
+inline constexpr std::uint32_t kQueueSlot = dma::Mfc::kQueueSlotEvent;  ///< QV
 inline constexpr std::uint32_t kInMbox = 0x10;                ///< MB: the mailbox is no longer empty
 inline constexpr std::uint32_t kDecrementer = 0x20;           ///< TM: it has passed 0
 inline constexpr std::uint32_t kOutIntrMboxFree = 0x40;       ///< ME

@@ -169,7 +169,7 @@ void SpeMonitor::wake_ppu() {
 
 bool SpeMonitor::ppu_wait(Lock& lock, const std::function<bool()>& ready, std::optional<HostTime> until) {
   SC_ASSERT(lock.owns_lock(), "the PPU side waits without the lock, with {} waits before", ppu_waits_.size());
-  SC_ASSERT(static_cast<bool>(ready), "the PPU side waits for nothing, with {} waits before",
+  SC_ASSERT(static_cast<bool>(ready), "the PPU side's wait has no condition; {} others wait",
             ppu_waits_.size());
   ppu_waits_.push_back(&ready);
   if (turn_ == kNobody) settle();

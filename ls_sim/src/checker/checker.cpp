@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "softcell/base/assert.h"
+#include "softcell/dma/mfc.h"
 #include "softcell/ls_sim/local_store.h"
 #include "softcell/ls_sim/trace.h"
 
@@ -17,8 +18,7 @@ using dma::MfcOpcode;
 using dma::Rule;
 
 constexpr std::uint32_t kEventStatus = 0, kListStallStatus = 25, kListStallAck = 26, kAtomicStatus = 27;
-constexpr std::uint32_t kAllTags = 2;         // what MFC_WrTagUpdate waits for
-constexpr std::uint32_t kTagStatusEvent = 1;  // of SPU_RdEventStat
+constexpr std::uint32_t kAllTags = 2;  // what MFC_WrTagUpdate waits for
 
 std::string hex(std::uint32_t lsa) {
   static constexpr char kDigits[] = "0123456789ABCDEF";
@@ -448,7 +448,7 @@ ChannelReply Checker::read(std::uint32_t channel) {
     complete(reply.value);
     if (is_waiting_) tags_issued_ &= ~reply.value;
   }
-  if (channel == kEventStatus && (reply.value & kTagStatusEvent) != 0) on_tag_status();
+  if (channel == kEventStatus && (reply.value & dma::Mfc::kTagStatusEvent) != 0) on_tag_status();
   if (channel == kListStallStatus) on_list_stall(reply.value);
   if (channel == kAtomicStatus) status_unread_.reset();
   return reply;

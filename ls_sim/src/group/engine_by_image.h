@@ -2,6 +2,7 @@
 // The engine of an SPE, which runs images of either machine.
 
 #include <atomic>
+#include <cstdint>
 #include <memory>
 
 #include "softcell/base/assert.h"
@@ -13,12 +14,15 @@ namespace softcell::ls_sim {
 /// The engine that the loaded image needs; each is made when the first image needs it, the native one at once.
 class EngineByImage final : public Engine {
  public:
+  /// @param main_memory_bytes  as in NativeOptions
   EngineByImage(LocalStore& local_store, dma::EffectiveAddress local_store_ea,
-                const InterpreterOptions& options)
+                const InterpreterOptions& options, std::uint64_t main_memory_bytes)
       : local_store_(local_store),
         local_store_ea_(local_store_ea),
         options_(options),
-        native_(make_native_engine(local_store, {.debugger = options.debugger, .spe = options.spe})),
+        native_(make_native_engine(
+            local_store,
+            {.debugger = options.debugger, .spe = options.spe, .main_memory_bytes = main_memory_bytes})),
         current_(native_.get()) {}
 
   /// The engine that an image needs is made here, so that no run allocates it.

@@ -13,6 +13,15 @@
 
 namespace softcell::ls_sim {
 
+namespace {
+
+/// The memory of a host program has no main memory of softcell. What a kernel follows there is judged as with the usual size.
+std::uint64_t main_memory_bytes_of(const dma::AddressSpace& memory) {
+  return memory.is_host_program() ? dma::kMainMemoryBytes : memory.main_memory_bytes();
+}
+
+}  // namespace
+
 Spe::Spe(int number, dma::AddressSpace& memory, const SpeOptions& options, SpeMonitor& monitor)
     : number_(number),
       options_(options),
@@ -21,11 +30,11 @@ Spe::Spe(int number, dma::AddressSpace& memory, const SpeOptions& options, SpeMo
       timer_(options.timing == nullptr ? nullptr : &options.timing->timer(number)),
       local_store_(memory.place_of_local_store(number)),
       mfc_(local_store_.bytes(), memory, options.schedule, static_cast<std::uint64_t>(number), this),
-      engine_(std::make_unique<EngineByImage>(local_store_, dma::local_store_ea(number),
-                                              InterpreterOptions{.host_calls = options.host_calls,
-                                                                 .timer = timer_,
-                                                                 .debugger = options.debugger,
-                                                                 .spe = number})),
+      engine_(std::make_unique<EngineByImage>(
+          local_store_, dma::local_store_ea(number),
+          InterpreterOptions{
+              .host_calls = options.host_calls, .timer = timer_, .debugger = options.debugger, .spe = number},
+          main_memory_bytes_of(memory))),
       channels_({.spe = number_,
                  .options = options_,
                  .monitor = monitor_,

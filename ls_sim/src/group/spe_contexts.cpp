@@ -21,9 +21,12 @@ namespace softcell::ls_sim {
 namespace {
 
 const SpeOptions& checked_for_contexts(const SpeOptions& options) {
-  if (options.spes < 1) throw std::invalid_argument("there must be room for 1 SPE context at least");
+  if (options.spes < 1)
+    throw std::invalid_argument("SpeOptions::spes is " + std::to_string(options.spes) +
+                                "; at least 1 is needed");
   if (options.deadline < std::chrono::milliseconds::zero())
-    throw std::invalid_argument("the deadline of a run must not be negative");
+    throw std::invalid_argument("the deadline of a run is " + std::to_string(options.deadline.count()) +
+                                " ms; it must be 0 or above");
   if (options.trace != nullptr && options.trace->spes() < options.spes) {
     throw std::invalid_argument("the trace has room for " + std::to_string(options.trace->spes()) +
                                 " SPEs; there may be " + std::to_string(options.spes));
@@ -218,7 +221,8 @@ class Context final : public SpeContext, private StopListener {
 
   ContextStop resume() override {
     SpeMonitor::Lock lock = monitor_.lock();
-    if (phase_ != Phase::kStopped) throw std::logic_error("the SPE context has no stop to go on from");
+    if (phase_ != Phase::kStopped)
+      throw std::logic_error("resume(): the SPE context has not stopped, or its stop ended the program");
     resumed_ = true;
     start(std::chrono::steady_clock::now());
     return wait_for_stop(lock);
@@ -389,7 +393,8 @@ std::unique_ptr<SpeContext> SpeContexts::create() {
 
 bool SpeContexts::wait(const std::function<bool()>& ready,
                        std::optional<std::chrono::steady_clock::time_point> until) {
-  SC_ASSERT(static_cast<bool>(ready), "a wait for nothing, with room for {} contexts", state_->options.spes);
+  SC_ASSERT(static_cast<bool>(ready), "wait() has no condition; there is room for {} contexts",
+            state_->options.spes);
   SpeMonitor::Lock lock = state_->monitor.lock();
   return state_->monitor.ppu_wait(lock, ready, until);
 }

@@ -28,7 +28,8 @@ const SpeOptions& checked(const SpeOptions& options) {
                                 std::to_string(dma::kSpeCount) + " are allowed");
   }
   if (options.deadline <= std::chrono::milliseconds::zero()) {
-    throw std::invalid_argument("the deadline of a run must be positive");
+    throw std::invalid_argument("the deadline of a run is " + std::to_string(options.deadline.count()) +
+                                " ms; it must be above 0");
   }
   if (options.trace != nullptr && options.trace->spes() < options.spes) {
     throw std::invalid_argument("the trace has room for " + std::to_string(options.trace->spes()) +
@@ -36,10 +37,15 @@ const SpeOptions& checked(const SpeOptions& options) {
   }
   const bool is_by_time = options.interleaving == Interleaving::kByTime;
   if (is_by_time != (options.timing != nullptr) || (is_by_time && options.clock != Clock::kSimulated)) {
-    throw std::invalid_argument("timing, the simulated clock and turns by time need each other");
+    throw std::invalid_argument(
+        "SpeOptions::timing needs interleaving = kByTime and clock = kSimulated, and kByTime needs timing; "
+        "time_by() sets all three");
   }
   if (options.trace != nullptr && (options.trace->clock() == TraceClock::kSimulated) != is_by_time) {
-    throw std::invalid_argument("a trace has the simulated clock if and only if the SPEs are timed");
+    throw std::invalid_argument(is_by_time ? "the trace has the host's clock, and the SPEs are timed: "
+                                             "construct it with TraceClock::kSimulated"
+                                           : "the trace has the simulated clock, and the SPEs are not timed: "
+                                             "construct it with TraceClock::kHost");
   }
   if (options.timing != nullptr && options.timing->spes() < options.spes) {
     throw std::invalid_argument("the timing has room for " + std::to_string(options.timing->spes()) +

@@ -32,7 +32,6 @@ using S64x2 = std::int64_t __attribute__((vector_size(16)));
 using Quadword = U32x4;
 
 inline constexpr int kPreferredWord = 3;  ///< of the host
-inline constexpr int kPreferredHalf = 6;  ///< bytes 2 and 3 of the SPU
 
 inline std::uint32_t preferred_word(Quadword q) { return q[kPreferredWord]; }
 

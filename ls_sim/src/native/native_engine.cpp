@@ -63,7 +63,9 @@ std::string describe_stack(const ImageSizes& sizes) {
 class NativeEngine final : public Engine {
  public:
   NativeEngine(LocalStore& local_store, const NativeOptions& options)
-      : local_store_(local_store), landing_stack_(std::make_unique<std::byte[]>(kLandingStackBytes)) {
+      : local_store_(local_store),
+        main_memory_bytes_(options.main_memory_bytes),
+        landing_stack_(std::make_unique<std::byte[]>(kLandingStackBytes)) {
     require_vector_units(__builtin_cpu_supports("avx2") != 0, __builtin_cpu_supports("fma") != 0);
     native::install_signal_handlers();
     context_.arena = arena();
@@ -180,6 +182,7 @@ class NativeEngine final : public Engine {
   }
 
   LocalStore& local_store_;
+  const std::uint64_t main_memory_bytes_;
   std::unique_ptr<std::byte[]> landing_stack_;
   const KernelImage* image_ = nullptr;
   std::vector<std::byte> linked_;           ///< the bytes of image_ as they lie in this local store
@@ -605,11 +608,6 @@ dma::Fault NativeEngine::cause_of_trap() const {
                                                     ", by a null pointer" +
                                                     (trap.instruction_fetch ? " to a function" : ""));
   }
-  if (dma::is_low_word_of_effective_address(trap.address)) {
-    return fault(dma::Rule::kEffectiveAddressAsPointer,
-                 where + access + "address " + hexadecimal(trap.address) +
-                     ", the low 32 bits of an effective address; main storage is reached by DMA only");
-  }
   const std::uintptr_t offset = trap.address - arena();
   if (offset < 2 * std::uintptr_t{dma::kLocalStoreBytes}) {
     return fault(dma::Rule::kOutsideLocalStore, where + access +
@@ -619,6 +617,12 @@ dma::Fault NativeEngine::cause_of_trap() const {
   if (arena() - trap.address <= LocalStore::kGuardBytes) {
     return fault(dma::Rule::kOutsideLocalStore,
                  where + access + base::byte_count(arena() - trap.address) + " before the local store");
+  }
+  // After the addresses around the local store, which may be low words of addresses in a large main memory.
+  if (dma::is_low_word_of_effective_address(trap.address, main_memory_bytes_)) {
+    return fault(dma::Rule::kEffectiveAddressAsPointer,
+                 where + access + "address " + hexadecimal(trap.address) +
+                     ", the low 32 bits of an effective address; main storage is reached by DMA only");
   }
   return fault(
       dma::Rule::kOutsideLocalStore,

@@ -37,7 +37,8 @@ class Shared {
       : state_(std::make_shared<State>(State{std::move(make), nullptr})) {}
 
   const std::shared_ptr<Rig>& get() const {
-    SC_ASSERT(state_->rig || state_->make, "what {} benchmarks share cannot be made", state_.use_count());
+    SC_ASSERT(state_->rig || state_->make, "the rig of {} benchmarks has no function that makes it",
+              state_.use_count());
     if (!state_->rig) state_->rig = state_->make();
     return state_->rig;
   }

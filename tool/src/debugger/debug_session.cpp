@@ -145,7 +145,8 @@ DebugStop DebugSession::start() {
 DebugStop DebugSession::run_to(const Goal& goal, const Interrupted& interrupted) {
   {
     const std::lock_guard lock(mutex_);
-    SC_ASSERT(state_ == State::kStanding, "instruction {} goes on, and nothing stands", count_);
+    SC_ASSERT(state_ == State::kStanding, "the program is continued at instruction {} but is not stopped",
+              count_);
     goal_ = goal;
     accessed_.reset();
     state_ = State::kRunning;

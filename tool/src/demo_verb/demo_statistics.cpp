@@ -226,7 +226,7 @@ nlohmann::ordered_json to_json(const DemoFigures& f) {
 void print_summary(const DemoFigures& f, const DemoOptions& options) {
   using base::counted;
   if (f.fps > 0) {
-    SC_ASSERT(!f.time_shares.empty(), "{} frames a second were spent on nothing", f.fps);
+    SC_ASSERT(!f.time_shares.empty(), "{} frames a second, but no shares of time", f.fps);
     const TimeShare& binds = f.time_shares.front();
     fmt::print("{} a second; {} {:.0f} %\n", frame_rate(f.fps), binds.words, 100 * binds.share);
   } else {

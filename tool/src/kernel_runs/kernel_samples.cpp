@@ -87,7 +87,7 @@ void SampleRun::run(dma::EffectiveAddress argp, std::size_t pieces) {
 }
 
 std::span<const KernelSample> plain_samples() {
-  static constexpr KernelSample kSamples[] = {{"job_loop", "end", run_job_loop},
+  static constexpr KernelSample kSamples[] = {{"job_loop", "run without jobs", run_job_loop},
                                               {"rotations", "matrix", run_rotations},
                                               {"transfers", "transfer", run_transfers}};
   return kSamples;

@@ -14,8 +14,8 @@ std::string fill_in(std::string_view text,
                     std::initializer_list<std::pair<std::string_view, std::string_view>> values) {
   std::string result;
   for (const auto& [marker, value] : values) {
-    SC_ASSERT(marker.size() > 2 && marker.starts_with('@') && marker.ends_with('@'), "{} marks nothing",
-              marker);
+    SC_ASSERT(marker.size() > 2 && marker.starts_with('@') && marker.ends_with('@'),
+              "'{}' is no marker; it must look like @NAME@", marker);
     const std::size_t at = text.find(marker);
     if (at == std::string_view::npos) throw std::logic_error("report/page.html lacks " + std::string(marker));
     result.append(text.substr(0, at)).append(value);

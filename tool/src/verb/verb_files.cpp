@@ -62,8 +62,8 @@ std::string explanation_of(const std::exception& error) {
 }
 
 void write_json(base::WholeFile& file, const nlohmann::ordered_json& document) {
-  SC_ASSERT(!document.is_null() && !document.is_discarded(), "a document of {} values is nothing",
-            document.size());
+  SC_ASSERT(!document.is_null() && !document.is_discarded(),
+            "the JSON document of {} values is null or discarded", document.size());
   // Names of files need not be UTF-8.
   file.write(document.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
   file.finish();

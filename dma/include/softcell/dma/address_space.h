@@ -127,10 +127,12 @@ class AddressSpace {
   /// @throws std::runtime_error  no free range is large enough; the message gives the sizes.
   /// @throws std::invalid_argument  zero bytes, an element width other than 0, 1, 2, 4 and 8, both a width and a record, or
   ///                                a record that ElementLayout refuses.
+  /// @throws std::logic_error  is_host_program()
   EffectiveAddress allocate(std::string name, std::uint64_t bytes, const BufferOptions& options = {});
 
   /// Frees a buffer. @pre no command is in flight to or from it
   /// @throws std::invalid_argument  no buffer begins at `ea`.
+  /// @throws std::logic_error       is_host_program()
   void free(EffectiveAddress ea);
 
   /// Whether this storage is the memory of the host program.
@@ -187,7 +189,10 @@ class AddressSpace {
   /// The reservations of this storage. Every copy that must respect reserved lines goes through them.
   Reservations& reservations() const { return reservations_; }
 
-  /// Free bytes: the sum, and the size of the largest free range.
+  /// The size of main memory. @throws std::logic_error  is_host_program()
+  std::uint64_t main_memory_bytes() const;
+
+  /// Free bytes: the sum, and the size of the largest free range. @throws std::logic_error  is_host_program()
   std::uint64_t free_bytes(Memory memory) const;
   std::uint64_t largest_free_range(Memory memory) const;
 

@@ -54,11 +54,13 @@ constexpr bool is_effective_address(std::uint64_t ea) { return (ea >> 32) == (kM
 
 /// True for a 32-bit number that is the low word of an address in main or video memory or in the local stores, whether or not anything is
 /// allocated there: a 32-bit pointer keeps this much of an effective address.
-constexpr bool is_low_word_of_effective_address(std::uint64_t address) {
+/// @param main_memory_bytes  up to kMaxMainMemoryBytes
+constexpr bool is_low_word_of_effective_address(std::uint64_t address,
+                                                std::uint64_t main_memory_bytes = kMainMemoryBytes) {
   const auto in = [&](EffectiveAddress base, std::uint64_t bytes) {
     return address - (base.value & 0xFFFF'FFFFu) < bytes;
   };
-  return in(kMainMemoryBase, kMainMemoryBytes) || in(kVideoMemoryBase, kVideoMemoryBytes) ||
+  return in(kMainMemoryBase, main_memory_bytes) || in(kVideoMemoryBase, kVideoMemoryBytes) ||
          in(kLocalStoresBase, kSpeCount * kLocalStoreStrideBytes);
 }
 

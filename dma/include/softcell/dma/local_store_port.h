@@ -20,9 +20,12 @@ enum class SpeRegister : std::uint32_t {
 /// The SPE implements this interface, and the writer calls it: on any thread, perhaps with reservation locks held. An implementation must
 /// be short and must not call the address space.
 ///
-/// These are written in one access: 1, 2, 4 or 8 bytes; each quadword of a transfer within one line; and each quadword of a longer
-/// transfer, if the host's memcpy does so, which it does on x86. So a kernel may poll a quadword of its local store to which another SPE
-/// puts. Several quadwords may arrive in any order unless a fence or barrier orders their commands.
+/// The writer writes each of these in one access, so a kernel may poll them in its local store:
+/// - a transfer of 1, 2, 4 or 8 bytes;
+/// - each quadword of a transfer within one line;
+/// - each quadword of a longer transfer, if the host's memcpy does so, which it does on x86.
+///
+/// Several quadwords may arrive in any order unless a fence or barrier orders their commands.
 class LocalStorePort {
  public:
   virtual ~LocalStorePort() = default;

@@ -42,6 +42,7 @@ class Mfc {
   /// @param listener       called when this MFC loses its reservation, by the thread that writes to the line;
   ///                       may be null.
   /// @throws std::invalid_argument  a local store of another size.
+  /// @throws std::runtime_error     Reservations::kMaxHolders MFCs, job chains and Atomics use the address space already.
   Mfc(std::span<std::byte> local_store, AddressSpace& space, Schedule schedule,
       std::uint64_t stream_number = 0, ReservationListener* listener = nullptr);
 

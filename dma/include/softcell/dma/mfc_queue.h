@@ -117,9 +117,11 @@ class MfcQueue {
 
   /// The slot in `slots` that was filled last, or first. @pre slots is not empty, all are occupied
   int newest(SlotSet slots) const {
+    SC_ASSERT((slots & ~occupied_) == 0, "slots {}, of which {} are occupied", slots, occupied_);
     return best_of(slots, [this](int a, int b) { return issued_[a] > issued_[b]; });
   }
   int oldest(SlotSet slots) const {
+    SC_ASSERT((slots & ~occupied_) == 0, "slots {}, of which {} are occupied", slots, occupied_);
     return best_of(slots, [this](int a, int b) { return issued_[a] < issued_[b]; });
   }
 

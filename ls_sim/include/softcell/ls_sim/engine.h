@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "softcell/dma/addresses.h"
 #include "softcell/dma/fault.h"
 #include "softcell/ls_sim/channels.h"
 #include "softcell/ls_sim/image.h"
@@ -169,6 +170,8 @@ class Engine {
 struct NativeOptions {
   Debugger* debugger = nullptr;  ///< its on_instruction() is called before each instruction; may be null
   int spe = 0;                   ///< the SPE's number, for the debugger
+  /// Of main memory: faults of kernels that follow an effective address as a pointer say so for addresses in it.
+  std::uint64_t main_memory_bytes = dma::kMainMemoryBytes;
 };
 
 /// Makes the engine for images that softcell_add_spu_kernel has built for this host.

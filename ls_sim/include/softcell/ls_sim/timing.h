@@ -3,7 +3,9 @@
 // docs/guide/timing.md explains the figures, docs/reference/timing.md the model.
 //
 //   Timing timing(2);
-//   SpeGroup spes(memory, {.spes = 2, .interleaving = Interleaving::kByTime, .clock = Clock::kSimulated, .timing = &timing});
+//   SpeOptions options{.spes = 2};
+//   time_by(&timing, options);
+//   SpeGroup spes(memory, options);
 //   ...
 //   const CycleCounts counts = timing.total(0);
 

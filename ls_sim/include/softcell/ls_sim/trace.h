@@ -93,6 +93,7 @@ class Trace {
 
   /// @param spes         1 or more.
   /// @param most_events  for each SPE and kind: jobs, waits, commands, findings.
+  /// @throws std::invalid_argument  there are fewer SPEs than 1.
   explicit Trace(int spes, std::size_t most_events = kMostEvents, TraceClock clock = TraceClock::kHost);
   ~Trace();
 

@@ -81,7 +81,7 @@ class JobSystem {
   JobImage load(const ls_sim::KernelImage& image);
 
   /// Waits for all chains and ends the job loops. Afterwards statistics and traces are complete: they include what the loops did between
-  /// jobs. No chain may be kicked after this.
+  /// jobs. A chain that is kicked after this fails, and none of its jobs runs.
   void stop();
 
   /// The statistics of each SPE, up to the last job that it has ended. Any thread.
@@ -122,7 +122,8 @@ class JobChain {
 
   std::size_t size() const;  ///< jobs added
 
-  /// Starts the jobs. Never waits, allocates nothing. @pre finished()
+  /// Starts the jobs. Does not wait for them. Allocates nothing, except when the loops must start again or the system was stopped.
+  /// @pre finished()
   void kick();
 
   /// Whether all jobs of the last kick have ended.

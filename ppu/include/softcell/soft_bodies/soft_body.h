@@ -78,7 +78,7 @@ class SoftBody {
   /// The positions as x y z 0 in metres, 16 bytes each, ready to be copied to SPEs or to a graphics card.
   std::span<const Eigen::Vector4f> padded_positions() const requires(kDimension == 3) { return padded_; }
 
-  // For an engine's coupling, which calls these in this order in each time step of `step` seconds.
+  // For solvers, in each time step of `step` seconds: pull() or take_pulled(), then flow().
 
   /// Shape matching and damping: changes velocities, conserves momentum and angular momentum, moves nothing.
   /// @throws std::runtime_error  a particle is NaN or infinite; nothing has changed then.
@@ -92,6 +92,18 @@ class SoftBody {
     for (std::size_t i = 0; i < pulled_.size(); ++i) pulled_[i] = velocity_of(i);
     end_pull();
   }
+  /// Lets a plastic body flow: changes its rest shape. Every kPlasticSteps-th call looks at the strains. If the body may yield, another
+  /// thread computes the flow, and the call kFlowSteps steps later applies the result, for which it may have to wait, unless the body has
+  /// sprung back so far that this would add energy. Only such steps allocate memory.
+  /// @param stretch  how much distances differ from those of the rest shape, as the SPEs' solver has measured it: saves most looks, and
+  ///                 does not change results. Nothing: not measured
+  void flow(float step, std::optional<float> stretch = {});
+  /// Whether the next flow() looks at the strains.
+  bool will_look() const;
+  static constexpr int kPlasticSteps = 4, kFlowSteps = 1;
+
+  // For couplings, after the solver, in each time step.
+
   /// Slows particles down that are faster than `limit` (m/s).
   void limit_speed(float limit);
   /// Integrates the inner particles under `gravity` (m/s^2): v += h g, x += h v. The engines' own order.
@@ -100,37 +112,23 @@ class SoftBody {
   /// velocity with which they left. Nothing else keeps the inner particles of a crushed body from sinking
   /// through the ground. For bodies with one layer of outer particles, as in two dimensions.
   void keep_inner_inside();
-  /// Sets an outer particle to the state that the engine has for it.
-  void set_particle(std::size_t particle, const Vector& position, const Vector& velocity) {
-    x_[particle] = position;
-    v_[particle] = velocity;
-    if constexpr (kDimension == 3) padded_[particle] = {position.x(), position.y(), position.z(), 0};
-  }
+  /// Sets a particle to a state that an engine or a coupling has computed: metres, m/s. @pre particle < model().particles()
+  void set_particle(std::size_t particle, const Vector& position, const Vector& velocity);
 
-  /// Lets a plastic body flow: changes its rest shape. Call it in each time step after pull(). Every kPlasticSteps-th call looks at the
-  /// strains. If the body may yield, another thread computes the flow, and the call kFlowSteps steps later applies the result, for which it
-  /// may have to wait, unless the body has sprung back so far that this would add energy. Only such steps allocate memory.
-  /// @param stretch  how much distances differ from those of the rest shape, as the SPEs' solver has measured it: saves most looks, and
-  ///                 does not change results. Nothing: not measured
-  void flow(float step, std::optional<float> stretch = {});
-  /// Whether the next flow() looks at the strains.
-  bool will_look() const;
-  static constexpr int kPlasticSteps = 4, kFlowSteps = 1;
+  // For couplings, at any time between two solver steps.
 
   /// Sets this body, a piece, to the state that its particles had in the whole body: positions, velocities, material, rest shape,
   /// rotations of regions.
   /// @param whole  the body that broke   @param particle_of  for each particle of this body, its number in the whole
   /// @param centre  whole.precise_centre_of_mass(), which all its pieces need
-  /// @pre this body's model is a piece of the whole's
+  /// @pre this body's model is a piece of the whole's; particle_of has a number below whole.model().particles() for each particle
   void inherit_state(const SoftBody& whole, std::span<const std::uint32_t> particle_of,
                      const Eigen::Vector<double, kDimension>& centre);
 
-  /// Sets a particle's velocity (m/s), which a coupling has computed.
-  void set_velocity(std::size_t particle, const Vector& velocity) { v_[particle] = velocity; }
-
-  /// Whether the body sleeps. Solvers do not step a sleeping body. Couplings put bodies to sleep and wake them.
-  bool asleep() const { return asleep_; }
-  void set_asleep(bool asleep);  ///< for couplings
+  /// Sets a particle's velocity (m/s), which a coupling has computed. @pre particle < model().particles()
+  void set_velocity(std::size_t particle, const Vector& velocity);
+  /// Puts the body to sleep or wakes it, without a change of its velocities.
+  void set_asleep(bool asleep);
 
   // For the user, between time steps. Each of these functions increments revision(), which tells a coupling of the
   // change. Functions that make the rotations of the last step useless also increment resets().
@@ -154,6 +152,11 @@ class SoftBody {
   void add_particle_velocity(std::size_t particle, const Vector& dv);  ///< m/s
   /// Adds a rotation about the centre of mass, in rad/s, to every particle's velocity.
   void add_angular_velocity(const AxialVector& dw);
+
+  // The state of the body now. These functions change nothing.
+
+  /// Whether the body sleeps. Solvers do not step a sleeping body. Couplings put bodies to sleep and wake them.
+  bool asleep() const { return asleep_; }
   /// Whether the body has a rest shape of its own, because it has yielded or set_rest_positions() gave it one.
   bool has_own_rest() const;
   /// The rest shape: metres, of each particle; its centre of mass is that of the model at rest.

@@ -57,21 +57,17 @@ class SoftBodySolver {
 template <int kDimension>
 class PpuSolver final : public SoftBodySolver<kDimension> {
  public:
-  void kick(std::span<SoftBody<kDimension>* const> bodies, float step) override {
-    bodies_.assign(bodies.begin(), bodies.end());
-    step_ = step;
-  }
-  void finish() override {
-    for (SoftBody<kDimension>* const body : bodies_)
-      if (!body->asleep()) body->pull(step_), body->flow(step_);
-    bodies_.clear();
-  }
-  void drop() override { bodies_.clear(); }
-  void forget(const SoftBody<kDimension>&) override {}  // a SoftBody keeps its own rotations
+  void kick(std::span<SoftBody<kDimension>* const> bodies, float step) override;
+  void finish() override;
+  void drop() override;
+  void forget(const SoftBody<kDimension>& body) override;
 
  private:
   std::vector<SoftBody<kDimension>*> bodies_;
   float step_ = 0;
 };
+
+extern template class PpuSolver<2>;
+extern template class PpuSolver<3>;
 
 }  // namespace softcell::ppu

@@ -63,6 +63,7 @@ class SurfaceQuery {
 
   /// Metres from a point to the nearest place of the surface; below 0 inside the body. A point is inside if a line from it does not leave
   /// the body as often as it enters it. If parts reach into each other, or a body is crushed, the nearest place may lie inside the body.
+  /// @pre the point is finite
   float distance(const Vector& point) const;
 
   /// The box around the surface, metres.

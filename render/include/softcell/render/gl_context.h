@@ -5,7 +5,7 @@
 
 namespace softcell::render {
 
-/// An OpenGL 3.3 core context. It belongs to the thread that made it, and a process uses one backend: Mesa's
+/// An OpenGL 3.3 core context. It is current on one thread at a time; see Window::release(). A process uses one backend: Mesa's
 /// libraries keep the current context in shared thread-local state, and two of them on one thread crash.
 class GlContext {
  public:
