@@ -1,5 +1,5 @@
 #pragma once
-// Convex shapes of Bullet that softcell does not know one by one: the hull of their corners or, where they are round, of many of their points.
+// Convex shapes of Bullet that softcell does not know one by one: the hull of their corners or, where they are round, of many points.
 
 #include <BulletCollision/CollisionShapes/btConvexShape.h>
 #include <BulletCollision/CollisionShapes/btMultiSphereShape.h>
@@ -15,8 +15,8 @@ namespace softcell::ppu {
 /// Up to this share of another length a length counts as none; and the thickness it gets instead, in both directions.
 inline constexpr float kNoLength = 1e-5f, kThickness = 1e-3f;
 
-/// Faces and edges of the hull of a convex shape. Polyhedra of every class are exact. Of any other shape the hull has so many points that the
-/// shape reaches beyond no face by more than kTolerance of half its length; very long and thin ones, with more than some 1,000 points, are coarser.
+/// Faces and edges of the hull of a convex shape. Polyhedra of every class are exact. Any other shape reaches beyond no face of its hull by
+/// more than kTolerance of half its length, unless this takes more than some 1,000 points.
 class ConvexHull {
  public:
   static constexpr float kTolerance = 0.005f;

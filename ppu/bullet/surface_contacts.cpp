@@ -76,8 +76,7 @@ void SurfaceContacts::wake_if_disturbed(std::span<SurfaceBody* const> bodies, st
   }
 }
 
-/// Wakes sleepers on bodies whose support has changed, and those on these: a support that moves slowly, such as a lift, moves nobody so fast
-/// that others would wake.
+/// Wakes sleepers on bodies whose support has changed, and those on these: a lift may be so slow that nobody on it wakes others by moving.
 void SurfaceContacts::wake_those_on_shaken(std::span<SurfaceBody* const> bodies) {
   for (std::size_t i = 0; i < shaken_.size(); ++i) {
     const SurfaceBody& shaken = *bodies[shaken_[i]];
