@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "ppu/contacts/find_contacts.h"
+#include "ppu/contacts/obstacle_contacts.h"
 #include "ppu/numbers/keep_each_once.h"
 #include "softcell/base/assert.h"
 
@@ -223,9 +224,7 @@ void ContactStage::find_with_rigid(std::span<const BodyInStage> bodies, std::spa
   for (std::uint32_t a = 0; a < bodies_.size(); ++a) {
     if (bodies[a].obstacles.empty()) continue;
     Group& group = next_group(a, a, true);
-    for (const std::uint32_t obstacle : bodies[a].obstacles)
-      find_contacts(bodies_[a], cells_[a], obstacles, bodies[a].obstacles, obstacle, rigids, step,
-                    group.contacts);
+    find_contacts({bodies_[a], cells_[a], obstacles, bodies[a].obstacles, rigids, step}, group.contacts);
     group.sharp = sharp_contacts_.keep(group.contacts, bodies_[a]);
     for (SoftContact& contact : group.contacts) {
       contact.on_held = rigids[contact.rigid].inverse_mass > 0 && bodies_[a].holds(contact.a);

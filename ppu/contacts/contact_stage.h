@@ -17,7 +17,7 @@
 #include "ppu/contacts/contact_order.h"
 #include "ppu/contacts/contact_worker.h"
 #include "ppu/contacts/crushed_cells.h"
-#include "ppu/contacts/find_contacts.h"
+#include "ppu/contacts/end_cells.h"
 #include "ppu/contacts/lost_spin.h"
 #include "ppu/contacts/rigid_sets.h"
 #include "ppu/contacts/sharp_contacts.h"
