@@ -17,11 +17,11 @@ static_assert(sizeof(Eigen::Vector3f) == 12, "spans of vectors are uploaded as t
 
 GLint wrap_mode(Wrap wrap) {
   switch (wrap) {
-    case Wrap::repeat:
+    case Wrap::kRepeat:
       return GL_REPEAT;
-    case Wrap::mirror:
+    case Wrap::kMirror:
       return GL_MIRRORED_REPEAT;
-    case Wrap::clamp:
+    case Wrap::kClamp:
       return GL_CLAMP_TO_EDGE;
   }
   return GL_REPEAT;

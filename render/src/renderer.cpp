@@ -436,7 +436,7 @@ void Renderer::State::draw_surface(const StaticDraw& item) const {
   if (!item.parts.empty())
     return draw_parts(meshes.mesh(item.mesh), item.parts, item.pose, item.opacity, false);
   cull_back_faces(true);
-  const Program& program = item.pattern == Pattern::tiles ? programs->tiles : programs->rigid;
+  const Program& program = item.pattern == Pattern::kTiles ? programs->tiles : programs->rigid;
   draw_surface(program, meshes.mesh(item.mesh), triangles_to_draw(item), item.pose, item.colour,
                item.opacity);
 }
