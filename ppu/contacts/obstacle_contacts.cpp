@@ -61,8 +61,8 @@ ObstacleHit hit_at(const Arrival& arrival, const PointWay& way, float allowance)
                      there.distance + allowance + (1 - share) * there.normal.dot(way.to - way.from)};
 }
 
-/// Corrects the contact of a point that arrives at a face a little way from its edge, while its body's surface slides past the edge. Where a
-/// block slides on a soft floor, points ahead of it lie a little above its bottom: they pass below the block, and do not stop it.
+/// Corrects the contact of a point that arrives at a face a little way from its edge, while its body's surface slides past the edge. Where
+/// a block slides on a soft floor, points ahead of it lie a little above its bottom: they pass below the block, and do not stop it.
 /// @param inwards  from the point into its own body, across its surface: of unit length, in the obstacle's frame
 /// @return  the contact with the face beyond the edge; none: there is no edge near, or the body runs into the face
 std::optional<ObstacleHit> hit_of_face_beside(const Obstacle& obstacle, const PointWay& way,
@@ -309,7 +309,8 @@ class ObstacleContacts {
     sides.set_track(rigid_.number, obstacle_.part, {safe, middle});
   }
 
-  /// Whether a triangle may lie between two places, or moved_off() the second one. Most bodies are thicker than that: one look spares several.
+  /// Whether a triangle may lie between two places, or moved_off() the second one. Most bodies are thicker than that: one look spares
+  /// several.
   bool is_any_near(const KnownTriangles& triangles, const Vector3f& from, const Vector3f& to) const {
     bool any = false;
     for_each_triangle(triangles,

@@ -34,7 +34,8 @@ struct Snapshot3d {
 /// One thread uses it.
 class Snapshots3d {
  public:
-  /// Lets the SPEs make the vertices; without this call, the GPU makes them. All three must outlive this object. @pre no frame was handed over
+  /// Lets the SPEs make the vertices; without this call, the GPU makes them. All three must outlive this object.
+  /// @pre no frame was handed over
   void skin_on_spes(dma::AddressSpace& memory, ppu::JobSystem& jobs, const ls_sim::KernelImage& skin);
   bool skins_on_spes() const { return orchestrator_.has_value(); }
 
