@@ -9,7 +9,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "ppu/surfaces/contact_rigid.h"
 #include "softcell/soft_bodies/mesh.h"

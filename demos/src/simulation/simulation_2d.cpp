@@ -13,7 +13,6 @@
 #include <cmath>
 #include <optional>
 #include <stdexcept>
-#include <string>
 #include <variant>
 
 #include <fmt/format.h>

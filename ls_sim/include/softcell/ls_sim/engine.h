@@ -2,7 +2,6 @@
 // Engines execute the instructions of a kernel: the native engine those of the host, the interpreter those of the SPU.
 
 #include <array>
-#include <chrono>
 #include <cstdint>
 #include <memory>
 #include <optional>
