@@ -1,7 +1,6 @@
 #include "softcell/dma/atomics.h"
 
 #include <stdexcept>
-#include <string>
 
 #include "softcell/base/assert.h"
 #include "text.h"

@@ -22,8 +22,8 @@ enum class RegisterUse : std::uint8_t {
   kTest
 };
 
-/// mov between memory and a register, or of a constant to memory; a load into the 64 bits of a register with its sign; and a load that is an
-/// operand of an arithmetic instruction, whose other one is a register or a constant.
+/// mov between memory and a register, or of a constant to memory; a load into the 64 bits of a register with its sign; and a load that is
+/// an operand of an arithmetic instruction, whose other one is a register or a constant.
 struct AccessOfFourBytes {
   RegisterUse use = RegisterUse::kLoad;
   int gpr = 0;                             ///< 0..15 as instructions number them

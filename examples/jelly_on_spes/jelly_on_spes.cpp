@@ -58,7 +58,7 @@ int main(int argc, char** argv) try {
   };
   render::StaticDraw rigid[] = {add(ppu::make_box({12, 0.001f, 12}, 12)),
                                 add(ppu::make_box({0.5f, 0.5f, 0.5f}, 1))};
-  rigid[1].colour = render::srgb(0x4A7FB5), rigid[0].pattern = render::Pattern::tiles;
+  rigid[1].colour = render::srgb(0x4A7FB5), rigid[0].pattern = render::Pattern::kTiles;
   for (int frame = 0; frame < 75; ++frame) {
     world.stepSimulation(1 / 60.0f, 2, 1 / 120.0f);
     skinner.begin_frame();  // a game draws skinner.vertices(jelly) here: those of the frame before

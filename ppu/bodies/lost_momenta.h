@@ -9,7 +9,6 @@
 //     lost    +      +      +      +  -> given back as one rigid motion; the rest, too small for floats, is kept for later
 
 #include <Eigen/Core>
-#include <cstddef>
 #include <span>
 
 #include "ppu/numbers/turning.h"

@@ -2,7 +2,6 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
-#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -172,8 +171,8 @@ void stiffen(ContactBody& body, std::uint32_t cell, float share) {
   const std::span<const float> masses = body.model->masses();
   float mass = 0;
   for (const std::uint32_t k : corners) mass += masses[k];
-  // Lengths in cells and masses as shares give the same numbers at every scale. Places and velocities are taken relative to the first corner:
-  // sums of large numbers would lose digits.
+  // Lengths in cells and masses as shares give the same numbers at every scale. Places and velocities are taken relative to the first
+  // corner: sums of large numbers would lose digits.
   const Vector3f first = body.positions[corners[0]], carried = body.velocities[corners[0]];
   const auto from_first = [&](std::uint32_t k) -> Vector3f {
     return (body.positions[k] - first) / body.spacing();

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <limits>
 #include <span>
-#include <vector>
 
 #include "contact_solve_job.h"
 #include "ppu/contacts/contact_body.h"

@@ -2,11 +2,10 @@
 // Finds and solves the contacts of all soft bodies of a world in one substep.
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <cstdint>
-#include <memory>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "ppu/contacts/attach_units.h"
@@ -17,7 +16,7 @@
 #include "ppu/contacts/contact_order.h"
 #include "ppu/contacts/contact_worker.h"
 #include "ppu/contacts/crushed_cells.h"
-#include "ppu/contacts/find_contacts.h"
+#include "ppu/contacts/end_cells.h"
 #include "ppu/contacts/lost_spin.h"
 #include "ppu/contacts/rigid_sets.h"
 #include "ppu/contacts/sharp_contacts.h"
@@ -144,10 +143,6 @@ class ContactStage {
                        std::span<const ContactRigid> rigids, float step);
   Group& next_group(std::uint32_t a, std::uint32_t b, bool with_rigid);
   void put_in_order();
-  bool can_hand_to_worker(const Group& group) const;
-  bool hand_attachments_to_worker(std::size_t rigids);
-  void find_rigid_sets(std::span<ContactRigid> rigids);
-  void hand_to_worker(Group& group, std::span<ContactRigid> rigids, float step);
   /// Without contacts, nothing changes the attachments' results between rounds: one round then has the iterations of all.
   int rounds() const { return group_count_ == 0 ? 1 : settings.rounds; }
   int attachment_iterations() const { return settings.attachment_iterations * settings.rounds / rounds(); }
@@ -164,29 +159,47 @@ class ContactStage {
   void find_touched_cells();
   void stiffen_touched_cells();
   void solve_here(std::span<ContactRigid> rigids, float step);
-  bool share_with_worker(std::span<ContactRigid> rigids, float step);
-  void solve_in_between(std::span<ContactRigid> rigids, float step, int round, float stiffening,
-                        bool with_attachments);
-  void solve_with_worker(std::span<ContactRigid> rigids, float step);
   void weigh_rigid_groups(std::span<const ContactRigid> rigids);
   void add_rigid_groups(std::span<const ContactRigid> rigids);
   void prepare_here(std::span<ContactRigid> rigids);
   bool has_attachments() const { return attachments != nullptr && !attachments->empty(); }
   void solve_attachments(std::span<ContactRigid> rigids, float step, int round);
   void begin_attachments(std::span<ContactRigid> rigids, float step);
+  /// Calls work(group, iterations). Groups that alternate come after the others.
   template <typename Work>
-  void for_each_turn(std::span<Group* const> groups, const Work& work) const;
+  void for_each_turn(std::span<Group* const> groups, const Work& work) const {
+    int turns = 0;
+    for (Group* const group : groups) {
+      if (group->alternates)
+        turns = std::max(turns, iterations_of(*group));
+      else
+        work(*group, iterations_of(*group));
+    }
+    for (int i = 0; i < turns; ++i)
+      for (Group* const group : groups)
+        if (group->alternates && i < iterations_of(*group)) work(*group, 1);
+  }
   void iterate_here(std::span<Group* const> groups, std::span<ContactRigid> rigids, float step);
-  SolveGroup solved_by_worker(const Group& group) const;
+  void take_back_lost_spin(float step);
+
+  // In contact_stage_worker.cpp:
+  bool can_hand_to_worker(const Group& group) const;
+  void find_rigid_sets(std::span<ContactRigid> rigids);
+  bool hand_attachments_to_worker(std::size_t rigids);
+  void hand_to_worker(Group& group, std::span<ContactRigid> rigids, float step);
   void add_pairs_to(SolveStages& stages);
+  SolveGroup solved_by_worker(const Group& group) const;
   void add_rigid_sets_to(SolveStages& stages);
   void add_attachments_to(SolveStages& stages, bool ends) const;
   void add_bodies_to(SolveStages& stages, float stiffening);
+  bool share_with_worker(std::span<ContactRigid> rigids, float step);
+  void solve_in_between(std::span<ContactRigid> rigids, float step, int round, float stiffening,
+                        bool with_attachments);
+  void solve_with_worker(std::span<ContactRigid> rigids, float step);
   bool changed_by_worker(std::uint32_t body) const {
     return worker->holds(body) && (!touched_[body].empty() || attach_units_.hold(body));
   }
   void take_from_worker();
-  void take_back_lost_spin(float step);
   void give_to_worker();
 
   std::vector<ContactBody> bodies_;

@@ -58,4 +58,18 @@ inline std::optional<WayOut> way_out_of(const ContactBody& body, const DeformedP
                     body.spacing());
 }
 
+/// Moves b's anchor of a contact within its cell, so that impulse and reaction act at one point at the substep's beginning; otherwise they
+/// would turn the two bodies. A point still on its way may be somewhat outside.
+inline Eigen::Vector3f opposite(const ContactBody& b, const DeformedPlace& place,
+                                const Eigen::Vector3f& point) {
+  constexpr float kFarthest = 0.5f;  // cells outside: farther out, shares become large
+  const Eigen::Matrix3f inverse = place.jacobian.inverse();
+  Eigen::Vector3f xi = place.xi;
+  for (int i = 0; i < 3; ++i) {
+    xi += inverse * (point - anchor_in_cell(b.lattice(), place.cell, xi).of(b.positions));
+    xi = xi.cwiseMax(-kFarthest).cwiseMin(1 + kFarthest);
+  }
+  return xi;
+}
+
 }  // namespace softcell::ppu

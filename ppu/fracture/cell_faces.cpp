@@ -1,7 +1,6 @@
 #include "ppu/fracture/cell_faces.h"
 
 #include <algorithm>
-#include <tuple>
 #include <utility>
 
 #include "ppu/lattice/links.h"

@@ -278,71 +278,24 @@ std::span<const CellMesh::Crossing> CellMesh::crossings_of(const Corner& corner,
   return found == crossings_.end() ? std::span<const Crossing>() : std::span<const Crossing>(found->second);
 }
 
-/// The cut of the solid with a face is bounded by the mesh's cuts with the face, and by those parts of the face's edges that are inside the
-/// solid.
-CellMesh::Cap CellMesh::cap(std::uint32_t cell, std::uint32_t axis) const {
-  SC_ASSERT(cell < lattice_.cells.size() && axis < 3, "the face of cell {} of {} along axis {}", cell,
-            lattice_.cells.size(), axis);
-  Cap cap;
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> sides;  // indices in cap.positions
-  std::unordered_map<std::uint32_t, std::uint32_t> number_of_point;
-  const auto number_of = [&](std::uint32_t point) {
-    const auto [number, is_new] =
-        number_of_point.try_emplace(point, static_cast<std::uint32_t>(cap.positions.size()));
-    if (is_new) cap.positions.push_back(points_[point].position);
-    return number->second;
-  };
-  for (const Segment& segment : segments_of(3 * cell + axis)) {
-    const std::uint32_t from = number_of(segment.from);  // evaluated first by every compiler
-    sides.emplace_back(from, number_of(segment.to));
-  }
+namespace {
 
-  // Follows the edges of the face, counter-clockwise seen from outside.
-  const std::uint32_t u = (axis + 1) % 3, v = (axis + 2) % 3;
-  const std::array<unsigned, 4> around{1u << axis, 1u << axis | 1u << u, 1u << axis | 1u << u | 1u << v,
-                                       1u << axis | 1u << v};
-  std::array<std::uint32_t, 4> corner_number{};
-  std::array<bool, 4> has_number{};
-  const auto number_of_corner = [&](std::size_t i) {
-    if (!std::exchange(has_number[i], true)) {
-      corner_number[i] = static_cast<std::uint32_t>(cap.positions.size());
-      cap.positions.push_back(lattice_.rest_position(lattice_.corners[cell][around[i]]));
-    }
-    return corner_number[i];
-  };
-  for (std::size_t i = 0; i < 4; ++i) {
-    const std::uint32_t along = i % 2 == 0 ? u : v;
-    const std::size_t next = (i + 1) % 4, from = i < 2 ? i : next, to = i < 2 ? next : i;  // along the axis
-    const std::uint32_t begin = lattice_.corners[cell][around[from]];
-    int winding = winding_[begin];
-    std::optional<std::uint32_t> last;  // number of the last point
-    const auto end_at = [&](std::uint32_t number) {
-      const bool forwards = (i < 2) == (winding > 0);
-      for (int times = std::abs(winding); times > 0; --times)
-        forwards ? sides.emplace_back(*last, number) : sides.emplace_back(number, *last);
-    };
-    if (winding != 0) last = number_of_corner(from);
-    for (const Crossing& crossing : crossings_of(lattice_.particles[begin], along)) {
-      const std::uint32_t number = number_of(crossing.point);
-      if (winding != 0) end_at(number);
-      winding += crossing.enters;
-      last = number;
-    }
-    if (winding != 0) end_at(number_of_corner(to));
-  }
+using Side = std::pair<std::uint32_t, std::uint32_t>;  // numbers of its two points
+using Loop = std::vector<std::uint32_t>;               // numbers of points
 
-  // Joins sides into loops. Where the mesh is open they do not close.
-  std::vector<std::vector<std::uint32_t>> next_of(cap.positions.size());
-  std::vector<int> balance(cap.positions.size());
+/// Joins sides into loops. @return none: they do not close, because the mesh is open
+std::optional<std::vector<Loop>> loops_of(std::span<const Side> sides, std::size_t points) {
+  std::vector<std::vector<std::uint32_t>> next_of(points);
+  std::vector<int> balance(points);
   for (const auto& [from, to] : sides) {
     next_of[from].push_back(to);
     ++balance[from], --balance[to];
   }
-  if (std::any_of(balance.begin(), balance.end(), [](int out) { return out != 0; })) return {};
-  std::vector<std::vector<std::uint32_t>> loops;
+  if (std::any_of(balance.begin(), balance.end(), [](int out) { return out != 0; })) return std::nullopt;
+  std::vector<Loop> loops;
   for (std::uint32_t begin = 0; begin < next_of.size(); ++begin) {
     while (!next_of[begin].empty()) {
-      std::vector<std::uint32_t> loop;
+      Loop loop;
       std::uint32_t at = begin;
       do {
         loop.push_back(at);
@@ -353,13 +306,96 @@ CellMesh::Cap CellMesh::cap(std::uint32_t cell, std::uint32_t axis) const {
       if (loop.size() >= 3) loops.push_back(std::move(loop));  // two sides, there and back, enclose nothing
     }
   }
-  std::vector<Eigen::Vector2d> flat;
-  for (const Vector3f& position : cap.positions) {
-    const Vector3f local = (position - lattice_.rest_position(lattice_.corners[cell][0])) / lattice_.spacing;
-    flat.emplace_back(local[u], local[v]);
+  return loops;
+}
+
+}  // namespace
+
+/// Makes the cap of one face. The cut of the solid with a face is bounded by the mesh's cuts with the face, and by those parts of the
+/// face's edges that are inside the solid.
+class CellMesh::CapMaker {
+ public:
+  CapMaker(const CellMesh& mesh, std::uint32_t cell, std::uint32_t axis)
+      : mesh_(mesh), cell_(cell), axis_(axis) {}
+
+  Cap make() {
+    append_cuts();
+    append_rim();
+    auto loops = loops_of(sides_, cap_.positions.size());
+    if (!loops) return {};
+    const Lattice<3>& lattice = mesh_.lattice_;
+    std::vector<Eigen::Vector2d> flat;
+    for (const Vector3f& position : cap_.positions) {
+      const Vector3f local = (position - lattice.rest_position(lattice.corners[cell_][0])) / lattice.spacing;
+      flat.emplace_back(local[u_], local[v_]);
+    }
+    cap_.triangles = fill_loops(flat, std::move(*loops));
+    return std::move(cap_);
   }
-  cap.triangles = fill_loops(flat, std::move(loops));
-  return cap;
+
+ private:
+  std::uint32_t number_of(std::uint32_t point) {
+    const auto [number, is_new] =
+        number_of_point_.try_emplace(point, static_cast<std::uint32_t>(cap_.positions.size()));
+    if (is_new) cap_.positions.push_back(mesh_.points_[point].position);
+    return number->second;
+  }
+  std::uint32_t number_of_corner(std::size_t i) {
+    if (!std::exchange(has_number_[i], true)) {
+      corner_number_[i] = static_cast<std::uint32_t>(cap_.positions.size());
+      cap_.positions.push_back(mesh_.lattice_.rest_position(mesh_.lattice_.corners[cell_][around_[i]]));
+    }
+    return corner_number_[i];
+  }
+
+  /// The mesh's cuts with the face.
+  void append_cuts() {
+    for (const Segment& segment : mesh_.segments_of(3 * cell_ + axis_)) {
+      const std::uint32_t from = number_of(segment.from);  // evaluated first by every compiler
+      sides_.emplace_back(from, number_of(segment.to));
+    }
+  }
+
+  /// The parts of the face's edges that are inside the solid, counter-clockwise seen from outside.
+  void append_rim() {
+    for (std::size_t i = 0; i < 4; ++i) {
+      const std::uint32_t along = i % 2 == 0 ? u_ : v_;
+      const std::size_t next = (i + 1) % 4, from = i < 2 ? i : next, to = i < 2 ? next : i;  // along the axis
+      const std::uint32_t begin = mesh_.lattice_.corners[cell_][around_[from]];
+      int winding = mesh_.winding_[begin];
+      std::optional<std::uint32_t> last;  // number of the last point
+      const auto end_at = [&](std::uint32_t number) {
+        const bool forwards = (i < 2) == (winding > 0);
+        for (int times = std::abs(winding); times > 0; --times)
+          forwards ? sides_.emplace_back(*last, number) : sides_.emplace_back(number, *last);
+      };
+      if (winding != 0) last = number_of_corner(from);
+      for (const Crossing& crossing : mesh_.crossings_of(mesh_.lattice_.particles[begin], along)) {
+        const std::uint32_t number = number_of(crossing.point);
+        if (winding != 0) end_at(number);
+        winding += crossing.enters;
+        last = number;
+      }
+      if (winding != 0) end_at(number_of_corner(to));
+    }
+  }
+
+  const CellMesh& mesh_;
+  const std::uint32_t cell_, axis_;
+  const std::uint32_t u_ = (axis_ + 1) % 3, v_ = (axis_ + 2) % 3;  // axes in the face
+  const std::array<unsigned, 4> around_{1u << axis_, 1u << axis_ | 1u << u_,
+                                        1u << axis_ | 1u << u_ | 1u << v_, 1u << axis_ | 1u << v_};
+  Cap cap_;
+  std::vector<Side> sides_;  // of points in cap_.positions
+  std::unordered_map<std::uint32_t, std::uint32_t> number_of_point_;
+  std::array<std::uint32_t, 4> corner_number_{};
+  std::array<bool, 4> has_number_{};
+};
+
+CellMesh::Cap CellMesh::cap(std::uint32_t cell, std::uint32_t axis) const {
+  SC_ASSERT(cell < lattice_.cells.size() && axis < 3, "the face of cell {} of {} along axis {}", cell,
+            lattice_.cells.size(), axis);
+  return CapMaker(*this, cell, axis).make();
 }
 
 }  // namespace softcell::ppu

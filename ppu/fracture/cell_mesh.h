@@ -57,6 +57,7 @@ class CellMesh {
 
  private:
   class Maker;
+  class CapMaker;
   /// A point where a line of the lattice meets the mesh.
   struct Crossing {
     std::uint32_t point = 0;

@@ -2,12 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <numeric>
-#include <optional>
 #include <stdexcept>
 #include <string>
-#include <tuple>
 
 #include "ppu/lattice/locate.h"
 #include "softcell/base/assert.h"

@@ -2,7 +2,6 @@
 // Measures the distance of a place from the drawn edge of a body in two dimensions.
 
 #include <Eigen/Core>
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>

@@ -2,9 +2,6 @@
 
 #include <Eigen/Core>
 #include <cstddef>
-#include <cstdint>
-#include <functional>
-#include <span>
 #include <vector>
 
 #include "ppu/lattice/cells_by_index.h"

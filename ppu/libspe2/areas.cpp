@@ -1,7 +1,5 @@
 // Local stores and registers as memory, multi-source synchronisation, and what the machine has.
 
-#include <cstdint>
-
 #include "libspe2.h"
 #include "object.h"
 #include "softcell/dma/addresses.h"

@@ -1,6 +1,5 @@
 // Mailboxes and signals.
 
-#include <cstdint>
 #include <mutex>
 
 #include "libspe2.h"

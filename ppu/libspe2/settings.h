@@ -2,7 +2,6 @@
 // How the environment has a libspe2 program run.
 
 #include <chrono>
-#include <cstdint>
 #include <string>
 
 #include "softcell/dma/schedule.h"

@@ -357,10 +357,10 @@ bool PlasticFlow<kDimension>::stop_bad_cells(std::span<const Exact> shape) {
   return any;
 }
 
-/// With R the rotation of an edge when the body was seen, f its flow, d the edge at rest and D the edge now, s = R^T D - d is what stretches
-/// it. Half the sum of s^2 stands for the energy; the flow makes it half the sum of (s - f)^2. It takes energy as long as sum f . s is more
-/// than half of sum f^2. That it be all of it, so that the rest shape does not pass the present one, leaves something for what this leaves
-/// out: how an edge has turned since, and what flows to keep the volume.
+/// With R the rotation of an edge when the body was seen, f its flow, d the edge at rest and D the edge now, s = R^T D - d is what
+/// stretches it. Half the sum of s^2 stands for the energy; the flow makes it half the sum of (s - f)^2. It takes energy as long as
+/// sum f . s is more than half of sum f^2. That it be all of it, so that the rest shape does not pass the present one, leaves something for
+/// what this leaves out: how an edge has turned since, and what flows to keep the volume.
 template <int kDimension>
 void PlasticFlow<kDimension>::find_along() {
   along_.assign(rest_.size(), Exact::Zero());

@@ -1,7 +1,6 @@
 #include "ppu/mesh_import/gltf.h"
 
 #include <Eigen/Geometry>
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>

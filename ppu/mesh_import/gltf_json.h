@@ -2,7 +2,6 @@
 // The JSON of a glTF file: read by nlohmann/json without what nobody here reads, and looked into by functions whose
 // complaints name the place in the file.
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <nlohmann/json.hpp>

@@ -9,7 +9,6 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "ppu/mesh_import/mesh_file_check_formats.h"
 #include "ppu/mesh_import/mesh_file_text.h"

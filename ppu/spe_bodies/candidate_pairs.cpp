@@ -1,7 +1,5 @@
 #include "ppu/spe_bodies/candidate_pairs.h"
 
-#include <algorithm>
-
 #include "softcell/base/assert.h"
 
 namespace softcell::ppu {

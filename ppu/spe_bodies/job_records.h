@@ -1,7 +1,6 @@
 #pragma once
 // The widths of the numbers in the kernels' job contracts, for SPEs that run programs built for the SPU.
 
-#include <cstdint>
 #include <span>
 
 #include "match_2d_job.h"

@@ -1,7 +1,6 @@
 #pragma once
 // What the code that runs the kernels match, match_tiles and match_2d shares.
 
-#include <cstddef>
 #include <stdexcept>
 #include <string>
 

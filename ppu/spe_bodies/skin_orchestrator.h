@@ -8,8 +8,6 @@
 // shows the other.
 
 #include <array>
-#include <chrono>
-#include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>

@@ -1,6 +1,7 @@
 #include "ppu/spe_bodies/spe_attachments.h"
 
 #include <algorithm>
+#include <vector>
 
 #include "ppu/spe_bodies/contact_records.h"
 

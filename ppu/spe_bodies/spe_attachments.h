@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <functional>
 #include <span>
-#include <vector>
 
 #include "attach_job.h"
 #include "ppu/contacts/attach_unit.h"

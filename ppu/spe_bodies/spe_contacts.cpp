@@ -1,11 +1,9 @@
 #include "ppu/spe_bodies/spe_contacts.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <span>
-#include <string>
 
 #include "ppu/spe_bodies/contact_records.h"
 #include "ppu/spe_bodies/find_model.h"

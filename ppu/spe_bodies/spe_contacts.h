@@ -6,7 +6,6 @@
 //     solve   a chain with a stage for each of SolveStages, a job for each unit
 
 #include <memory>
-#include <optional>
 #include <span>
 #include <unordered_map>
 #include <vector>

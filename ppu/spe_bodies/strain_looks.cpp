@@ -1,6 +1,5 @@
 #include "ppu/spe_bodies/strain_looks.h"
 
-#include <array>
 #include <cmath>
 #include <utility>
 

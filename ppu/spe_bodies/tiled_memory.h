@@ -13,7 +13,6 @@
 // The result has the same bits as that of MatchBodies on a body that fits.
 
 #include <array>
-#include <cstdint>
 #include <optional>
 #include <span>
 

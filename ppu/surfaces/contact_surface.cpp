@@ -4,9 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <optional>
-#include <tuple>
 #include <unordered_map>
 
 #include "ppu/lattice/locate.h"

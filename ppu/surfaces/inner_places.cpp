@@ -36,7 +36,8 @@ std::vector<CellPlace> deepest_nodes(const ContactSurface& surface, std::span<co
   return places;
 }
 
-/// If a part is thinner than the distance between nodes, all nodes may be outside of it: then the middle of the cell's surface points is used.
+/// If a part is thinner than the distance between nodes, all nodes may be outside of it: then the middle of the cell's surface points is
+/// used.
 void replace_those_outside(const ContactSurface& surface, std::vector<CellPlace>& places) {
   auto point = surface.points().begin();  // ascending by cell
   for (std::uint32_t cell = 0; cell < places.size(); ++cell) {

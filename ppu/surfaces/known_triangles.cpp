@@ -1,7 +1,6 @@
 #include "ppu/surfaces/known_triangles.h"
 
 #include <Eigen/Geometry>
-#include <algorithm>
 #include <cstddef>
 #include <cstring>
 

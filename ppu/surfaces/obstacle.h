@@ -9,7 +9,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "ppu/surfaces/contact_rigid.h"
 #include "softcell/soft_bodies/mesh.h"
@@ -88,7 +87,7 @@ Bounds<3> bounds(const Obstacle& obstacle);
 
 /// @param point  in the obstacle's frame; so is the result. @pre  the obstacle's kind has an inside: it is not kTriangles
 Separation separation(const Obstacle& obstacle, const Eigen::Vector3f& point);
-/// Whether the surface near a point of it may turn by more than a tenth of a radian within `reach` (metres): at an edge, or where it is round.
+/// Whether the surface near a point of it may turn by more than 0.1 radians within `reach` (metres): at an edge, or where it is round.
 /// @param point  in the obstacle's frame   @pre  it has an inside
 bool may_turn_near(const Obstacle& obstacle, const Eigen::Vector3f& point, float reach);
 

@@ -2,7 +2,6 @@
 // no use without its library, which is loaded at run time. [EGL 1.5, EGL_MESA_platform_surfaceless]
 // documented
 
-#include <cstdint>
 #include <cstdio>
 #include <memory>
 #include <stdexcept>

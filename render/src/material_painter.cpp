@@ -168,8 +168,8 @@ struct MaterialPainter::Program {
                         "#define METALLIC_ROUGHNESS_TEXTURE\n"),
              if_defined(material.normal_texture.has_value(), "#define NORMAL_TEXTURE\n"),
              if_defined(material.emission_texture.has_value(), "#define EMISSION_TEXTURE\n"),
-             if_defined(material.alpha_mode == AlphaMode::mask, "#define MASK\n"),
-             if_defined(material.alpha_mode == AlphaMode::blend, "#define BLEND\n"), sun, kShaderLighting,
+             if_defined(material.alpha_mode == AlphaMode::kMask, "#define MASK\n"),
+             if_defined(material.alpha_mode == AlphaMode::kBlend, "#define BLEND\n"), sun, kShaderLighting,
              kMaterialFragment})) {
     const auto uniform = [&](const char* name) { return gl.GetUniformLocation(object.name(), name); };
     model = uniform("model");

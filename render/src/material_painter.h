@@ -24,7 +24,7 @@ class MaterialPainter {
            const Eigen::Matrix3f& normal_matrix, float opacity);
 
   /// Whether what is drawn covers pixels by its alpha.
-  static bool covers_by_alpha(const Material& material) { return material.alpha_mode != AlphaMode::opaque; }
+  static bool covers_by_alpha(const Material& material) { return material.alpha_mode != AlphaMode::kOpaque; }
 
  private:
   struct Program;

@@ -9,8 +9,8 @@
 namespace softcell::render {
 
 std::unique_ptr<GlContext> create_offscreen_context(Backend backend) {
-  if (backend == Backend::egl) return create_egl_context();
-  if (backend == Backend::osmesa) return create_osmesa_context();
+  if (backend == Backend::kEgl) return create_egl_context();
+  if (backend == Backend::kOsmesa) return create_osmesa_context();
   try {
     return create_osmesa_context();
   } catch (const std::runtime_error& no_osmesa) {

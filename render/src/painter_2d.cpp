@@ -316,7 +316,7 @@ void Painter2d::draw_shapes(const Frame2d& frame, const Canvas2d& canvas,
     if (shape.texture) {
       gl_.BindTexture(GL_TEXTURE_2D, texture(*shape.texture));
     } else {
-      gl_.Uniform1f(program.places[3], shape.fill == Fill2d::hatched ? kHatching * height : 0.0f);
+      gl_.Uniform1f(program.places[3], shape.fill == Fill2d::kHatched ? kHatching * height : 0.0f);
     }
     draw_triangles(shape, i);
   }

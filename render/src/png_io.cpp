@@ -7,7 +7,6 @@
 #include <cerrno>
 #include <csetjmp>
 #include <cstdio>
-#include <cstring>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -108,7 +107,7 @@ bool encode(const Encoding& encoding, std::FILE* stream, Message& message) {
                encoding.rgb.empty() ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
                PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
   png_set_sRGB(png, info, PNG_sRGB_INTENT_PERCEPTUAL);
-  if (encoding.effort == PngEffort::fast) {
+  if (encoding.effort == PngEffort::kFast) {
     png_set_filter(png, PNG_FILTER_TYPE_BASE, PNG_NO_FILTERS);
     png_set_compression_level(png, 3);
   }

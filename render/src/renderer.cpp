@@ -2,20 +2,17 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <limits>
 #include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
-#include <vector>
 
-#include "cell_skinner.h"
 #include "gl_objects.h"
 #include "material_painter.h"
-#include "mesh_levels.h"
+#include "mesh_store.h"
 #include "overlay_painter.h"
 #include "painter_2d.h"
-#include "post_process.h"
+#include "render_targets.h"
 #include "shaders.h"
 #include "softcell/base/assert.h"
 
@@ -24,12 +21,6 @@ namespace {
 
 static_assert(sizeof(Eigen::Vector3f) == 12, "spans of vectors are uploaded as they are");
 
-constexpr GLuint kPositionAttribute = 0;
-constexpr GLuint kNormalAttribute = 1;
-constexpr GLuint kTextureAttribute = 2;
-constexpr GLuint kColourAttribute = 3;
-constexpr GLenum kPictureUnit = GL_TEXTURE1;  // the shadow map has unit 0
-constexpr GLint kPictureUnitNumber = 1;
 constexpr GLuint kFrameBinding = 0;
 constexpr float kAwayShare = 1.0f / 48;   // of RendererSettings::coarse_pixels, for MeshLevel::error
 constexpr float kOcclusionShare = 0.06f;  // of the shadow radius: how far a surface keeps ambient light off
@@ -79,41 +70,6 @@ struct Program {
   GLint radius;
 };
 
-/// What a picture is drawn in, and what is shown: the finished picture under an overlay.
-struct PictureBuffers {
-  std::unique_ptr<PostProcess> frame;
-  GlObject shown_framebuffer, shown_colour;
-};
-
-/// Some of the triangles of a mesh.
-struct TriangleRange {
-  std::size_t first = 0;
-  std::size_t count = 0;
-};
-
-/// Triangles on the GPU.
-struct MeshBuffers {
-  explicit MeshBuffers(const GladGLContext& gl)
-      : layout(make_vertex_array(gl)), vertices(make_buffer(gl)), indices(make_buffer(gl)) {}
-
-  GlObject layout;
-  GlObject vertices;
-  GlObject indices;
-  std::size_t triangle_count = 0;  ///< of the whole mesh; in `indices` coarser ones follow
-  struct Level {
-    float spacing = 0, error = 0;  ///< as MeshLevel
-    TriangleRange triangles;
-  };
-  std::vector<Level> levels;        ///< coarser and coarser
-  Eigen::Vector3f centre{0, 0, 0};  ///< of a sphere around a mesh that does not change
-  float radius = 0;                 ///< likewise, metres
-  std::size_t vertices_needed = 0;  ///< the largest index and one
-  bool filled = false;              ///< the vertices have been given
-  std::optional<GlObject> texture_coordinates;
-  std::optional<GlObject> colours;
-  std::optional<CellMesh> cells;  ///< what the vertices are made from, unless they are given
-};
-
 /// What to draw of a mesh where vertices may be moved by `most` metres.
 TriangleRange triangles_of(const MeshBuffers& buffers, float most) {
   TriangleRange range{0, buffers.triangle_count};
@@ -121,8 +77,6 @@ TriangleRange triangles_of(const MeshBuffers& buffers, float most) {
     if (level.spacing <= most && level.error <= kAwayShare * most) range = level.triangles;
   return range;
 }
-
-std::size_t bytes_of(std::size_t count, std::size_t size) { return count * size; }
 
 /// World to the shadow map's clip space: a box around the sphere that the light shines on, seen along the
 /// light.
@@ -146,18 +100,6 @@ Eigen::Matrix3f normal_matrix(const Eigen::Matrix4f& pose) {
   return cofactors;
 }
 
-GLint wrap_mode(Wrap wrap) {
-  switch (wrap) {
-    case Wrap::repeat:
-      return GL_REPEAT;
-    case Wrap::mirror:
-      return GL_MIRRORED_REPEAT;
-    case Wrap::clamp:
-      return GL_CLAMP_TO_EDGE;
-  }
-  return GL_REPEAT;
-}
-
 bool any_two_sided(std::span<const PartDraw> parts) {
   return std::any_of(parts.begin(), parts.end(),
                      [](const PartDraw& part) { return part.material.two_sided; });
@@ -175,21 +117,9 @@ struct Renderer::State {
   State(GlContext& gl_context, const RendererSettings& settings);
   ~State() { context.make_current(); }  // then the members' objects are deleted
 
-  void require_drawable(int side) const;
-  void make_picture_buffers(int new_width, int new_height);
-  void make_shadow_map();
-  MeshBuffers make_mesh(const void* indices, std::size_t index_count) const;
-  MeshBuffers make_skinned_mesh(std::span<const std::uint32_t> indices) const;
-  void add_levels(MeshBuffers& buffers, std::span<const Eigen::Vector3f> positions,
-                  std::span<const Eigen::Vector3f> normals) const;
   float metres_to_move(float distance) const;
   TriangleRange triangles_to_draw(const SkinnedDraw& item) const;
   TriangleRange triangles_to_draw(const StaticDraw& item) const;
-  MeshId add(MeshBuffers buffers);
-  void filled(MeshId id, std::size_t bytes);
-  const MeshBuffers& mesh(MeshId id) const;
-  const MeshBuffers& mesh(StaticMeshId id) const;
-  const GlObject& texture(TextureId id) const;
 
   void check(const FrameDescription& frame) const;
   PixelRect part_to_draw(const std::optional<PixelRect>& changes, bool is_kept) const;
@@ -204,11 +134,7 @@ struct Renderer::State {
   void draw(const MeshBuffers& buffers, const TriangleRange& triangles) const;
   void draw_parts(const MeshBuffers& buffers, std::span<const PartDraw> parts, const Eigen::Matrix4f& pose,
                   float opacity, bool two_sided) const;
-  template <class Value>
-  void set_attribute(MeshBuffers& buffers, std::optional<GlObject>& buffer, GLuint attribute,
-                     std::span<const Value> values, const char* what) const;
   void cull_back_faces(bool cull) const;
-  void show(GLuint framebuffer) const;
   void draw_surface(const SkinnedDraw& item) const;
   void draw_surface(const StaticDraw& item) const;
   void draw_surface(const Program& program, const MeshBuffers& buffers, const TriangleRange& triangles,
@@ -217,19 +143,12 @@ struct Renderer::State {
 
   GlContext& context;
   GladGLContext gl;
-  int width;
-  int height;
-  int shadow_map_size;
-  float shadow_reach;    ///< texels that a lit fragment looks around itself
-  int largest_side = 0;  ///< of a picture or texture, in pixels
-  int samples = 1;
-  int occlusion_pixels;
+  float shadow_reach;  ///< texels that a lit fragment looks around itself
   float coarse_pixels;
   Eigen::Vector3f eye{0, 0, 0};  ///< of the frame that is drawn
   float pixels_per_tangent = 1;  ///< likewise
-  std::string description;
-  bool has_picture = false;     ///< of the last frame, before it is resolved
-  bool has_picture_2d = false;  ///< likewise, of a frame in two dimensions
+  bool has_picture = false;      ///< of the last frame, before it is resolved
+  bool has_picture_2d = false;   ///< likewise, of a frame in two dimensions
 
   struct Programs {
     /// @param sun  one of the two ways in which shaders.h has sunlight
@@ -251,34 +170,24 @@ struct Renderer::State {
     Program rigid, soft, textured, tiles, shadow, particle, particle_shadow, link, background;
   };
 
-  // The framebuffer with its samples, the one they are resolved into, and the shadow map.
-  PictureBuffers picture_buffers;
-  GlObject shadow_framebuffer, shadow_map;
-  GlObject frame_buffer;  ///< the uniform block
+  std::optional<RenderTargets> targets;  ///< made when `gl` is loaded
+  GlObject frame_buffer;                 ///< the uniform block
   GlObject lattice_layout, lattice_vertices, lattice_indices;
   GlObject empty_layout;  ///< for the background, which has no vertices
   std::unique_ptr<Programs> programs;
   std::unique_ptr<MaterialPainter> materials;
-  std::unique_ptr<OverlayPainter> overlay;          ///< made when it is first asked for
-  std::unique_ptr<CellSkinner> skinner;             ///< likewise
-  std::unique_ptr<Painter2d> painter_2d;            ///< likewise
-  std::vector<std::optional<MeshBuffers>> skinned;  // none: removed
-  std::vector<std::uint32_t> removed;               // numbers in it
-  std::uint64_t uploaded_bytes = 0;
-  std::vector<MeshBuffers> statics;
-  std::vector<GlObject> textures;
-  Image picture;
+  std::unique_ptr<OverlayPainter> overlay;  ///< made when it is first asked for
+  std::unique_ptr<Painter2d> painter_2d;    ///< likewise
+  MeshStore meshes;
 };
 
 Renderer::State::State(GlContext& gl_context, const RendererSettings& settings)
     : context(gl_context),
-      width(settings.width),
-      height(settings.height),
-      shadow_map_size(settings.shadow_map_size),
       shadow_reach(settings.soft_shadows ? kSoftReach : kQuickReach),
-      occlusion_pixels(settings.occlusion_pixels),
-      coarse_pixels(settings.coarse_pixels) {
-  SC_ASSERT(occlusion_pixels >= 0, "ambient occlusion for {} pixels at a time", occlusion_pixels);
+      coarse_pixels(settings.coarse_pixels),
+      meshes(gl_context, gl, coarse_pixels != 0) {
+  SC_ASSERT(settings.occlusion_pixels >= 0, "ambient occlusion for {} pixels at a time",
+            settings.occlusion_pixels);
   SC_ASSERT(coarse_pixels >= 0, "vertices moved by {} pixels", coarse_pixels);
   context.make_current();
   const auto load = [](void* user, const char* name) {
@@ -287,26 +196,18 @@ Renderer::State::State(GlContext& gl_context, const RendererSettings& settings)
   if (gladLoadGLContextUserPtr(&gl, load, &context) < GLAD_MAKE_VERSION(3, 3)) {
     throw std::runtime_error(context.backend_name() + " offers less than OpenGL 3.3");
   }
-  const auto limit = [this](GLenum name) {
-    GLint value = 0;
-    gl.GetIntegerv(name, &value);
-    return value;
-  };
-  largest_side = std::min(limit(GL_MAX_RENDERBUFFER_SIZE), limit(GL_MAX_TEXTURE_SIZE));
-  for (const int side : {width, height, shadow_map_size}) require_drawable(side);
-  const int most_samples = std::min(
-      {limit(GL_MAX_SAMPLES), limit(GL_MAX_COLOR_TEXTURE_SAMPLES), limit(GL_MAX_DEPTH_TEXTURE_SAMPLES)});
-  samples = std::clamp(settings.samples, 1, std::max(most_samples, 1));
-  description = context.backend_name() + ", " + reinterpret_cast<const char*>(gl.GetString(GL_RENDERER)) +
-                ", " + std::to_string(samples) + " samples";
-
+  targets.emplace(gl, context.backend_name(),
+                  RenderTargetSettings{.width = settings.width,
+                                       .height = settings.height,
+                                       .shadow_map_size = settings.shadow_map_size,
+                                       .samples = settings.samples,
+                                       .occlusion_pixels = settings.occlusion_pixels,
+                                       .frame_binding = kFrameBinding});
   const char* const sun = settings.soft_shadows ? kSoftSunlight : kQuickSunlight;
   programs = std::make_unique<Programs>(gl, sun);
   materials = std::make_unique<MaterialPainter>(gl, sun, kFrameBinding);
   gl.UseProgram(programs->textured.object.name());
   gl.Uniform1i(gl.GetUniformLocation(programs->textured.object.name(), "picture"), kPictureUnitNumber);
-  make_picture_buffers(width, height);
-  make_shadow_map();
   frame_buffer = make_buffer(gl);
   empty_layout = make_vertex_array(gl);
 
@@ -323,124 +224,6 @@ Renderer::State::State(GlContext& gl_context, const RendererSettings& settings)
   gl.BlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE);  // a picture has no holes
 }
 
-void Renderer::State::require_drawable(int side) const {
-  if (side >= 1 && side <= largest_side) return;
-  throw std::runtime_error("a picture or shadow map of " + std::to_string(side) +
-                           " pixels a side cannot be drawn; 1 to " + std::to_string(largest_side) + " can");
-}
-
-/// Where it throws, all stays as it was.
-void Renderer::State::make_picture_buffers(int new_width, int new_height) {
-  const auto refuse = [&](const std::string& what) {
-    gl.GetError();  // which the context would keep for whoever asks next
-    throw std::runtime_error(description + ": " + what + " of " + std::to_string(new_width) + " by " +
-                             std::to_string(new_height) + " pixels");
-  };
-  gl.GetError();  // of whoever had the context before: no fault of this size
-  PictureBuffers made;
-  try {
-    made.frame = std::make_unique<PostProcess>(gl, PostProcessSettings{.width = new_width,
-                                                                       .height = new_height,
-                                                                       .samples = samples,
-                                                                       .occlusion_pixels = occlusion_pixels,
-                                                                       .frame_binding = kFrameBinding});
-  } catch (const std::runtime_error& error) {
-    refuse(error.what());
-  }
-  made.shown_framebuffer = make_framebuffer(gl);
-  made.shown_colour = make_renderbuffer(gl);
-  gl.BindRenderbuffer(GL_RENDERBUFFER, made.shown_colour.name());
-  gl.RenderbufferStorage(GL_RENDERBUFFER, GL_RGBA8, new_width, new_height);
-  gl.BindFramebuffer(GL_FRAMEBUFFER, made.shown_framebuffer.name());
-  gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, made.shown_colour.name());
-  if (gl.CheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) refuse("no framebuffer");
-  if (gl.GetError() != GL_NO_ERROR) refuse("no memory");
-
-  picture = Image(new_width, new_height);
-  picture_buffers = std::move(made);
-  width = new_width;
-  height = new_height;
-  has_picture = has_picture_2d = false;
-}
-
-void Renderer::State::make_shadow_map() {
-  shadow_map = make_texture(gl);
-  gl.BindTexture(GL_TEXTURE_2D, shadow_map.name());
-  gl.TexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH_COMPONENT32F, shadow_map_size, shadow_map_size, 0,
-                GL_DEPTH_COMPONENT, GL_FLOAT, nullptr);
-  gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
-  gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-  gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
-  gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL);
-  // Beyond the map the sun shines.
-  gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_BORDER);
-  gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_BORDER);
-  const std::array<float, 4> far_away{1, 1, 1, 1};
-  gl.TexParameterfv(GL_TEXTURE_2D, GL_TEXTURE_BORDER_COLOR, far_away.data());
-
-  shadow_framebuffer = make_framebuffer(gl);
-  gl.BindFramebuffer(GL_FRAMEBUFFER, shadow_framebuffer.name());
-  gl.FramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, shadow_map.name(), 0);
-  gl.DrawBuffer(GL_NONE);
-  gl.ReadBuffer(GL_NONE);
-  if (gl.CheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
-    throw std::runtime_error(description + ": no shadow map of " + std::to_string(shadow_map_size) +
-                             " texels a side");
-  }
-}
-
-MeshBuffers Renderer::State::make_mesh(const void* indices, std::size_t index_count) const {
-  MeshBuffers buffers(gl);
-  SC_ASSERT(
-      index_count % 3 == 0 && index_count <= static_cast<std::size_t>(std::numeric_limits<GLsizei>::max()),
-      "{} indices", index_count);
-  buffers.triangle_count = index_count / 3;
-  gl.BindVertexArray(buffers.layout.name());
-  gl.BindBuffer(GL_ELEMENT_ARRAY_BUFFER, buffers.indices.name());
-  gl.BufferData(GL_ELEMENT_ARRAY_BUFFER,
-                static_cast<GLsizeiptr>(bytes_of(index_count, sizeof(std::uint32_t))), indices,
-                GL_STATIC_DRAW);
-  gl.BindBuffer(GL_ARRAY_BUFFER, buffers.vertices.name());
-  gl.EnableVertexAttribArray(kPositionAttribute);
-  gl.EnableVertexAttribArray(kNormalAttribute);
-  return buffers;
-}
-
-MeshBuffers Renderer::State::make_skinned_mesh(std::span<const std::uint32_t> indices) const {
-  if (indices.size() % 3 != 0) {
-    throw std::invalid_argument(std::to_string(indices.size()) + " indices; triangles need a multiple of 3");
-  }
-  MeshBuffers buffers = make_mesh(indices.data(), indices.size());
-  for (const std::uint32_t index : indices) {
-    buffers.vertices_needed = std::max<std::size_t>(buffers.vertices_needed, std::size_t{index} + 1);
-  }
-  gl.VertexAttribPointer(kPositionAttribute, 3, GL_HALF_FLOAT, GL_FALSE, kSkinnedVertexBytes,
-                         buffer_offset(0));
-  gl.VertexAttribPointer(kNormalAttribute, 3, GL_HALF_FLOAT, GL_FALSE, kSkinnedVertexBytes, buffer_offset(8));
-  return buffers;
-}
-
-void Renderer::State::add_levels(MeshBuffers& buffers, std::span<const Eigen::Vector3f> positions,
-                                 std::span<const Eigen::Vector3f> normals) const {
-  if (coarse_pixels == 0 || buffers.triangle_count == 0) return;
-  buffers.levels.clear();
-  gl.BindVertexArray(buffers.layout.name());
-  std::vector<Triangle> triangles(buffers.triangle_count);
-  gl.GetBufferSubData(GL_ELEMENT_ARRAY_BUFFER, 0,
-                      static_cast<GLsizeiptr>(bytes_of(triangles.size(), sizeof(Triangle))),
-                      triangles.data());
-  const std::vector<MeshLevel> levels = coarser_levels(positions, normals, triangles);
-  for (const MeshLevel& level : levels) {
-    buffers.levels.push_back({.spacing = level.spacing,
-                              .error = level.error,
-                              .triangles = {triangles.size(), level.triangles.size()}});
-    triangles.insert(triangles.end(), level.triangles.begin(), level.triangles.end());
-  }
-  gl.BufferData(GL_ELEMENT_ARRAY_BUFFER,
-                static_cast<GLsizeiptr>(bytes_of(triangles.size(), sizeof(Triangle))), triangles.data(),
-                GL_STATIC_DRAW);
-}
-
 /// How far vertices may be moved that are `distance` metres from the eye, metres.
 float Renderer::State::metres_to_move(float distance) const {
   return coarse_pixels * std::max(distance, 0.0f) / pixels_per_tangent;
@@ -448,49 +231,16 @@ float Renderer::State::metres_to_move(float distance) const {
 
 TriangleRange Renderer::State::triangles_to_draw(const SkinnedDraw& item) const {
   if (item.texture)
-    return {0, mesh(item.mesh).triangle_count};  // coarser ones do not know where pictures end
-  return triangles_of(mesh(item.mesh), item.box ? metres_to_move(item.box->exteriorDistance(eye)) : 0);
+    return {0, meshes.mesh(item.mesh).triangle_count};  // coarser ones do not know where pictures end
+  return triangles_of(meshes.mesh(item.mesh), item.box ? metres_to_move(item.box->exteriorDistance(eye)) : 0);
 }
 
 TriangleRange Renderer::State::triangles_to_draw(const StaticDraw& item) const {
-  const MeshBuffers& buffers = mesh(item.mesh);
+  const MeshBuffers& buffers = meshes.mesh(item.mesh);
   const Eigen::Matrix3f stretch = item.pose.topLeftCorner<3, 3>();
   const float scale = stretch.colwise().norm().maxCoeff();
   const Eigen::Vector3f centre = (item.pose * buffers.centre.homogeneous()).head<3>();
   return triangles_of(buffers, metres_to_move((centre - eye).norm() - scale * buffers.radius) / scale);
-}
-
-MeshId Renderer::State::add(MeshBuffers buffers) {
-  if (!removed.empty()) {
-    const std::uint32_t number = removed.back();
-    removed.pop_back();
-    skinned[number].emplace(std::move(buffers));
-    return {number};
-  }
-  skinned.emplace_back(std::move(buffers));
-  return {static_cast<std::uint32_t>(skinned.size() - 1)};
-}
-
-void Renderer::State::filled(MeshId id, std::size_t bytes) {
-  SC_ASSERT(id.value < skinned.size() && skinned[id.value], "mesh {} of {}", id, skinned.size());
-  skinned[id.value]->filled = true;
-  uploaded_bytes += bytes;
-}
-
-const MeshBuffers& Renderer::State::mesh(MeshId id) const {
-  if (id.value >= skinned.size() || !skinned[id.value])
-    throw std::invalid_argument("no mesh " + std::to_string(id.value));
-  return *skinned[id.value];
-}
-
-const MeshBuffers& Renderer::State::mesh(StaticMeshId id) const {
-  if (id.value >= statics.size()) throw std::invalid_argument("no static mesh " + std::to_string(id.value));
-  return statics[id.value];
-}
-
-const GlObject& Renderer::State::texture(TextureId id) const {
-  if (id.value >= textures.size()) throw std::invalid_argument("no texture " + std::to_string(id.value));
-  return textures[id.value];
 }
 
 void Renderer::State::check_parts(const MeshBuffers& buffers, std::span<const PartDraw> parts) const {
@@ -505,7 +255,7 @@ void Renderer::State::check_parts(const MeshBuffers& buffers, std::span<const Pa
     for (const auto& used : {material.base_texture, material.metallic_roughness_texture,
                              material.normal_texture, material.emission_texture}) {
       if (!used) continue;
-      texture(*used);
+      meshes.texture(*used);
       if (!buffers.texture_coordinates)
         throw std::invalid_argument("a part with a texture belongs to a mesh without texture coordinates");
     }
@@ -516,16 +266,16 @@ void Renderer::State::check_parts(const MeshBuffers& buffers, std::span<const Pa
 
 void Renderer::State::check(const FrameDescription& frame) const {
   for (const SkinnedDraw& item : frame.skinned) {
-    const MeshBuffers& buffers = mesh(item.mesh);
+    const MeshBuffers& buffers = meshes.mesh(item.mesh);
     check_parts(buffers, item.parts);
     if (!item.texture) continue;
-    texture(*item.texture);
+    meshes.texture(*item.texture);
     if (!buffers.texture_coordinates) {
       throw std::invalid_argument("mesh " + std::to_string(item.mesh.value) +
                                   " is to be drawn with a texture and has no texture coordinates");
     }
   }
-  for (const StaticDraw& item : frame.statics) check_parts(mesh(item.mesh), item.parts);
+  for (const StaticDraw& item : frame.statics) check_parts(meshes.mesh(item.mesh), item.parts);
   for (const LatticeDraw& lattice : frame.lattices) {
     for (const auto& link : lattice.links) {
       if (link[0] >= lattice.particles.size() || link[1] >= lattice.particles.size()) {
@@ -538,9 +288,9 @@ void Renderer::State::check(const FrameDescription& frame) const {
 }
 
 PixelRect Renderer::State::part_to_draw(const std::optional<PixelRect>& changes, bool is_kept) const {
-  if (!changes || !is_kept) return {0, 0, width, height};
-  return {std::max(changes->left, 0), std::max(changes->top, 0), std::min(changes->right, width),
-          std::min(changes->bottom, height)};
+  if (!changes || !is_kept) return {0, 0, targets->width(), targets->height()};
+  return {std::max(changes->left, 0), std::max(changes->top, 0), std::min(changes->right, targets->width()),
+          std::min(changes->bottom, targets->height())};
 }
 
 void Renderer::State::upload_frame(const FrameDescription& frame) {
@@ -550,9 +300,10 @@ void Renderer::State::upload_frame(const FrameDescription& frame) {
             light.toward.y(), light.toward.z());
   SC_ASSERT(light.shadow_radius > 0, "a shadow radius of {} m", light.shadow_radius);
   eye = camera.eye;
-  pixels_per_tangent = static_cast<float>(height) / (2 * camera.tan_half_fov_y);
+  const auto w = static_cast<float>(targets->width()), h = static_cast<float>(targets->height());
+  pixels_per_tangent = h / (2 * camera.tan_half_fov_y);
   FrameBlock block;
-  block.view_projection = view_projection(camera, static_cast<float>(width) / static_cast<float>(height));
+  block.view_projection = view_projection(camera, w / h);
   block.light_projection = light_projection(light);
   block.view_to_world = look_at(camera.eye, camera.target, camera.up).transpose();
   block.eye = vec4(camera.eye);
@@ -562,16 +313,15 @@ void Renderer::State::upload_frame(const FrameDescription& frame) {
   block.ground = vec4(light.ground);
   block.background_top = vec4(frame.background_top);
   block.background_bottom = vec4(frame.background_bottom);
-  const float texels = static_cast<float>(shadow_map_size);
+  const float texels = static_cast<float>(targets->shadow_map_size());
   block.shadow_texel = Eigen::Vector4f(1 / texels, shadow_reach * 2 * light.shadow_radius / texels, 0, 0);
   block.pixels_per_tangent = Eigen::Vector4f(pixels_per_tangent, texels / (2 * light.shadow_radius), 0, 0);
-  const auto w = static_cast<float>(width), h = static_cast<float>(height);
   block.picture_size = Eigen::Vector4f(w, h, 1 / w, 1 / h);
   block.view_plane = Eigen::Vector4f(camera.tan_half_fov_y * w / h, camera.tan_half_fov_y, 0, 0);
   block.inverse_depth =
       Eigen::Vector4f(1 / camera.near_plane, 1 / camera.near_plane - 1 / camera.far_plane, 0, 0);
   block.occlusion = Eigen::Vector4f(kOcclusionShare * light.shadow_radius, light.occlusion,
-                                    PostProcess::max_reach(height), 0.99f * camera.far_plane);
+                                    PostProcess::max_reach(targets->height()), 0.99f * camera.far_plane);
   block.upwards = vec4(camera.up.normalized());
   gl.BindBufferBase(GL_UNIFORM_BUFFER, kFrameBinding, frame_buffer.name());
   gl.BufferData(GL_UNIFORM_BUFFER, sizeof block, &block, GL_STREAM_DRAW);
@@ -601,7 +351,7 @@ void Renderer::State::draw_parts(const MeshBuffers& buffers, std::span<const Par
   const Eigen::Matrix3f normals = normal_matrix(pose);
   gl.BindVertexArray(buffers.layout.name());
   for (const PartDraw& part : parts) {
-    materials->use(part.material, textures, pose, normals, opacity);
+    materials->use(part.material, meshes.textures(), pose, normals, opacity);
     cull_back_faces(!two_sided && !part.material.two_sided);
     const bool by_alpha = opacity >= 1 && MaterialPainter::covers_by_alpha(part.material);
     if (by_alpha) gl.Enable(GL_SAMPLE_ALPHA_TO_COVERAGE);  // without blending, in any order
@@ -628,20 +378,20 @@ void Renderer::State::draw_shadow(const MeshBuffers& buffers, const Eigen::Matri
 }
 
 void Renderer::State::draw_shadow_map(const FrameDescription& frame) {
-  gl.BindFramebuffer(GL_FRAMEBUFFER, shadow_framebuffer.name());
-  gl.Viewport(0, 0, shadow_map_size, shadow_map_size);
+  gl.BindFramebuffer(GL_FRAMEBUFFER, targets->shadow_framebuffer());
+  gl.Viewport(0, 0, targets->shadow_map_size(), targets->shadow_map_size());
   gl.Clear(GL_DEPTH_BUFFER_BIT);
   gl.UseProgram(programs->shadow.object.name());
-  const float texel = 2 * frame.light.shadow_radius / static_cast<float>(shadow_map_size);
+  const float texel = 2 * frame.light.shadow_radius / static_cast<float>(targets->shadow_map_size());
   for (const SkinnedDraw& item : frame.skinned) {
     if (item.opacity < 1) continue;
     cull_back_faces(!item.two_sided && !any_two_sided(item.parts));
-    draw_shadow(mesh(item.mesh), translation(item.origin), texel);
+    draw_shadow(meshes.mesh(item.mesh), translation(item.origin), texel);
   }
   for (const StaticDraw& item : frame.statics) {
     if (item.opacity < 1 && !item.always_shadow) continue;
     cull_back_faces(!any_two_sided(item.parts));
-    draw_shadow(mesh(item.mesh), item.pose, texel);
+    draw_shadow(meshes.mesh(item.mesh), item.pose, texel);
   }
   cull_back_faces(true);
   gl.UseProgram(programs->particle_shadow.object.name());
@@ -668,28 +418,31 @@ void Renderer::State::draw_surface(const Program& program, const MeshBuffers& bu
 
 void Renderer::State::draw_surface(const SkinnedDraw& item) const {
   if (!item.parts.empty()) {
-    return draw_parts(mesh(item.mesh), item.parts, translation(item.origin), item.opacity, item.two_sided);
+    return draw_parts(meshes.mesh(item.mesh), item.parts, translation(item.origin), item.opacity,
+                      item.two_sided);
   }
   cull_back_faces(!item.two_sided);
   if (item.texture) {
     gl.ActiveTexture(kPictureUnit);
-    gl.BindTexture(GL_TEXTURE_2D, texture(*item.texture).name());
+    gl.BindTexture(GL_TEXTURE_2D, meshes.texture(*item.texture).name());
     gl.ActiveTexture(GL_TEXTURE0);
   }
-  draw_surface(item.texture ? programs->textured : programs->soft, mesh(item.mesh), triangles_to_draw(item),
-               translation(item.origin), item.colour, item.opacity);
+  draw_surface(item.texture ? programs->textured : programs->soft, meshes.mesh(item.mesh),
+               triangles_to_draw(item), translation(item.origin), item.colour, item.opacity);
 }
 
 void Renderer::State::draw_surface(const StaticDraw& item) const {
-  if (!item.parts.empty()) return draw_parts(mesh(item.mesh), item.parts, item.pose, item.opacity, false);
+  if (!item.parts.empty())
+    return draw_parts(meshes.mesh(item.mesh), item.parts, item.pose, item.opacity, false);
   cull_back_faces(true);
-  const Program& program = item.pattern == Pattern::tiles ? programs->tiles : programs->rigid;
-  draw_surface(program, mesh(item.mesh), triangles_to_draw(item), item.pose, item.colour, item.opacity);
+  const Program& program = item.pattern == Pattern::kTiles ? programs->tiles : programs->rigid;
+  draw_surface(program, meshes.mesh(item.mesh), triangles_to_draw(item), item.pose, item.colour,
+               item.opacity);
 }
 
 void Renderer::State::draw_opaque(const FrameDescription& frame) {
-  gl.BindFramebuffer(GL_FRAMEBUFFER, picture_buffers.frame->drawn());
-  gl.Viewport(0, 0, width, height);
+  gl.BindFramebuffer(GL_FRAMEBUFFER, targets->frame().drawn());
+  gl.Viewport(0, 0, targets->width(), targets->height());
   gl.Clear(GL_DEPTH_BUFFER_BIT);  // the background covers what nothing else does
   for (const SkinnedDraw& item : frame.skinned) {
     if (item.opacity >= 1) draw_surface(item);
@@ -715,12 +468,6 @@ void Renderer::State::draw_lattice(const LatticeDraw& lattice) {
   gl.Uniform1f(particle.radius, lattice.radius);
   gl.DrawArrays(GL_POINTS, 0, static_cast<GLsizei>(lattice.particles.size()));
   gl.Disable(GL_SAMPLE_ALPHA_TO_COVERAGE);
-}
-
-void Renderer::State::show(GLuint framebuffer) const {
-  gl.BindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer);
-  gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, picture_buffers.shown_framebuffer.name());
-  gl.BlitFramebuffer(0, 0, width, height, 0, 0, width, height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
 }
 
 void Renderer::State::draw_background() {
@@ -749,202 +496,42 @@ Renderer::Renderer(GlContext& context, const RendererSettings& settings)
 
 Renderer::~Renderer() = default;
 
-MeshId Renderer::add_mesh(std::span<const std::uint32_t> indices) {
-  State& state = *state_;
-  state.context.make_current();
-  return state.add(state.make_skinned_mesh(indices));
-}
-
-void Renderer::remove_mesh(MeshId id) {
-  State& state = *state_;
-  state.mesh(id);
-  state.context.make_current();
-  state.skinned[id.value].reset();
-  state.removed.push_back(id.value);
-}
-
+MeshId Renderer::add_mesh(std::span<const std::uint32_t> indices) { return state_->meshes.add_mesh(indices); }
+void Renderer::remove_mesh(MeshId id) { state_->meshes.remove_mesh(id); }
 void Renderer::update_mesh(MeshId id, std::span<const std::byte> vertices) {
-  State& state = *state_;
-  const MeshBuffers& buffers = state.mesh(id);
-  if (buffers.cells)
-    throw std::invalid_argument("mesh " + std::to_string(id.value) +
-                                " is a mesh of cells: call update_corners()");
-  if (vertices.size() % kSkinnedVertexBytes != 0 ||
-      vertices.size() / kSkinnedVertexBytes < buffers.vertices_needed) {
-    throw std::invalid_argument(std::to_string(vertices.size()) + " bytes of vertices for a mesh of " +
-                                std::to_string(buffers.vertices_needed) + " vertices of 16 bytes");
-  }
-  state.context.make_current();
-  const auto size = static_cast<GLsizeiptr>(vertices.size());
-  state.gl.BindBuffer(GL_ARRAY_BUFFER, buffers.vertices.name());
-  // New storage in place of the old, which a frame in progress may still read.
-  state.gl.BufferData(GL_ARRAY_BUFFER, size, nullptr, GL_STREAM_DRAW);
-  state.gl.BufferSubData(GL_ARRAY_BUFFER, 0, size, vertices.data());
-  state.filled(id, vertices.size());
+  state_->meshes.update_mesh(id, vertices);
 }
-
 MeshId Renderer::add_cell_mesh(std::span<const std::uint32_t> indices, std::span<const CellVertex> vertices,
                                std::size_t corner_count) {
-  State& state = *state_;
-  state.context.make_current();
-  MeshBuffers buffers = state.make_skinned_mesh(indices);
-  if (buffers.vertices_needed > vertices.size()) {
-    throw std::invalid_argument("index " + std::to_string(buffers.vertices_needed - 1) + " of a mesh with " +
-                                std::to_string(vertices.size()) + " vertices");
-  }
-  if (state.skinner == nullptr) state.skinner = std::make_unique<CellSkinner>(state.gl);
-  // Its own storage for as long as it lives: the GPU reads what it has written itself, in order.
-  state.gl.BufferData(GL_ARRAY_BUFFER,
-                      static_cast<GLsizeiptr>(bytes_of(vertices.size(), kSkinnedVertexBytes)), nullptr,
-                      GL_STREAM_COPY);
-  buffers.cells.emplace(state.gl, vertices, corner_count);
-  return state.add(std::move(buffers));
+  return state_->meshes.add_cell_mesh(indices, vertices, corner_count);
 }
-
 void Renderer::update_corners(MeshId id, std::span<const std::byte> corners, const Eigen::Vector3f& origin) {
-  State& state = *state_;
-  const MeshBuffers& buffers = state.mesh(id);
-  if (!buffers.cells) throw std::invalid_argument("mesh " + std::to_string(id.value) + " has no cells");
-  if (corners.size() != bytes_of(buffers.cells->corner_count, kCellCornerBytes)) {
-    throw std::invalid_argument(std::to_string(corners.size()) + " bytes of corners for a mesh of " +
-                                std::to_string(buffers.cells->corner_count) + " corners of 16 bytes");
-  }
-  state.context.make_current();
-  state.skinner->skin(*buffers.cells, corners, origin, buffers.vertices);
-  state.filled(id, corners.size());
+  state_->meshes.update_corners(id, corners, origin);
 }
-
-template <class Value>
-void Renderer::State::set_attribute(MeshBuffers& buffers, std::optional<GlObject>& buffer, GLuint attribute,
-                                    std::span<const Value> values, const char* what) const {
-  if (values.size() < buffers.vertices_needed) {
-    throw std::invalid_argument(std::to_string(values.size()) + " " + what + " for a mesh of " +
-                                std::to_string(buffers.vertices_needed) + " vertices");
-  }
-  context.make_current();
-  if (!buffer) buffer = make_buffer(gl);
-  gl.BindVertexArray(buffers.layout.name());
-  gl.BindBuffer(GL_ARRAY_BUFFER, buffer->name());
-  gl.BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(values.size_bytes()), values.data(), GL_STATIC_DRAW);
-  gl.EnableVertexAttribArray(attribute);
-  gl.VertexAttribPointer(attribute, sizeof(Value) / sizeof(float), GL_FLOAT, GL_FALSE, sizeof(Value),
-                         nullptr);
-}
-
-namespace {
-constexpr char kCoordinates[] = "texture coordinates", kVertexColours[] = "vertex colours";
-}
-
 void Renderer::set_texture_coordinates(MeshId id, std::span<const Eigen::Vector2f> coordinates) {
-  state_->mesh(id);
-  MeshBuffers& buffers = *state_->skinned[id.value];
-  state_->set_attribute(buffers, buffers.texture_coordinates, kTextureAttribute, coordinates, kCoordinates);
+  state_->meshes.set_texture_coordinates(id, coordinates);
 }
-
 void Renderer::set_texture_coordinates(StaticMeshId id, std::span<const Eigen::Vector2f> coordinates) {
-  state_->mesh(id);
-  MeshBuffers& buffers = state_->statics[id.value];
-  state_->set_attribute(buffers, buffers.texture_coordinates, kTextureAttribute, coordinates, kCoordinates);
+  state_->meshes.set_texture_coordinates(id, coordinates);
 }
-
 void Renderer::set_vertex_colours(MeshId id, std::span<const Eigen::Vector4f> colours) {
-  state_->mesh(id);
-  MeshBuffers& buffers = *state_->skinned[id.value];
-  state_->set_attribute(buffers, buffers.colours, kColourAttribute, colours, kVertexColours);
+  state_->meshes.set_vertex_colours(id, colours);
 }
-
 void Renderer::set_vertex_colours(StaticMeshId id, std::span<const Eigen::Vector4f> colours) {
-  state_->mesh(id);
-  MeshBuffers& buffers = state_->statics[id.value];
-  state_->set_attribute(buffers, buffers.colours, kColourAttribute, colours, kVertexColours);
+  state_->meshes.set_vertex_colours(id, colours);
 }
-
 TextureId Renderer::add_texture(const Image& picture, const TextureSettings& settings) {
-  State& state = *state_;
-  if (picture.width < 1 || picture.height < 1 || picture.width > state.largest_side ||
-      picture.height > state.largest_side) {
-    throw std::invalid_argument("a texture of " + std::to_string(picture.width) + " by " +
-                                std::to_string(picture.height) + " pixels; 1 to " +
-                                std::to_string(state.largest_side) + " a side are possible");
-  }
-  // OpenGL counts rows from the bottom.
-  Image flipped(picture.width, picture.height);
-  const std::ptrdiff_t row_bytes = std::ptrdiff_t{4} * picture.width;
-  for (int y = 0; y < picture.height; ++y) {
-    const std::uint8_t* const row = picture.pixel(0, y);
-    std::copy(row, row + row_bytes, flipped.pixel(0, picture.height - 1 - y));
-  }
-  state.context.make_current();
-  const GladGLContext& gl = state.gl;
-  GlObject texture = make_texture(gl);
-  gl.ActiveTexture(kPictureUnit);
-  gl.BindTexture(GL_TEXTURE_2D, texture.name());
-  gl.TexImage2D(GL_TEXTURE_2D, 0, settings.linear ? GL_RGBA8 : GL_SRGB8_ALPHA8, picture.width, picture.height,
-                0, GL_RGBA, GL_UNSIGNED_BYTE, flipped.rgba.data());
-  gl.GenerateMipmap(GL_TEXTURE_2D);
-  gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
-  gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-  gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, wrap_mode(settings.wrap_u));
-  gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, wrap_mode(settings.wrap_v));
-  gl.ActiveTexture(GL_TEXTURE0);
-  state.textures.push_back(std::move(texture));
-  return {static_cast<std::uint32_t>(state.textures.size() - 1)};
+  return state_->meshes.add_texture(picture, settings, state_->targets->largest_side());
 }
-
 void Renderer::set_rest_shape(MeshId id, std::span<const Eigen::Vector3f> positions,
                               std::span<const Eigen::Vector3f> normals) {
-  State& state = *state_;
-  const std::size_t needed = state.mesh(id).vertices_needed;
-  if (positions.size() < needed || normals.size() != positions.size()) {
-    throw std::invalid_argument("a shape of " + std::to_string(positions.size()) + " positions and " +
-                                std::to_string(normals.size()) + " normals for a mesh of " +
-                                std::to_string(needed) + " vertices");
-  }
-  state.context.make_current();
-  state.add_levels(*state.skinned[id.value], positions, normals);
+  state_->meshes.set_rest_shape(id, positions, normals);
 }
-
-std::uint64_t Renderer::uploaded_bytes() const { return state_->uploaded_bytes; }
-
+std::uint64_t Renderer::uploaded_bytes() const { return state_->meshes.uploaded_bytes(); }
 StaticMeshId Renderer::add_static_mesh(std::span<const Eigen::Vector3f> positions,
                                        std::span<const Eigen::Vector3f> normals,
                                        std::span<const Triangle> triangles) {
-  if (positions.size() != normals.size()) {
-    throw std::invalid_argument(std::to_string(positions.size()) + " positions with " +
-                                std::to_string(normals.size()) + " normals");
-  }
-  for (const Triangle& triangle : triangles) {
-    for (const std::uint32_t index : triangle) {
-      if (index >= positions.size()) {
-        throw std::invalid_argument("index " + std::to_string(index) + " of a mesh with " +
-                                    std::to_string(positions.size()) + " vertices");
-      }
-    }
-  }
-  State& state = *state_;
-  state.context.make_current();
-  MeshBuffers buffers = state.make_mesh(triangles.data(), 3 * triangles.size());
-  // All positions, then all normals.
-  const GladGLContext& gl = state.gl;
-  const auto half = static_cast<GLsizeiptr>(positions.size_bytes());
-  gl.BufferData(GL_ARRAY_BUFFER, 2 * half, nullptr, GL_STATIC_DRAW);
-  gl.BufferSubData(GL_ARRAY_BUFFER, 0, half, positions.data());
-  gl.BufferSubData(GL_ARRAY_BUFFER, half, half, normals.data());
-  gl.VertexAttribPointer(kPositionAttribute, 3, GL_FLOAT, GL_FALSE, sizeof(Eigen::Vector3f),
-                         buffer_offset(0));
-  gl.VertexAttribPointer(kNormalAttribute, 3, GL_FLOAT, GL_FALSE, sizeof(Eigen::Vector3f),
-                         buffer_offset(positions.size_bytes()));
-  buffers.vertices_needed = positions.size();
-  buffers.filled = true;
-  if (!positions.empty()) {
-    Eigen::AlignedBox3f box;
-    for (const Eigen::Vector3f& position : positions) box.extend(position);
-    buffers.centre = box.center();
-    buffers.radius = 0.5f * box.diagonal().norm();
-    state.add_levels(buffers, positions, normals);
-  }
-  state.statics.push_back(std::move(buffers));
-  return {static_cast<std::uint32_t>(state.statics.size() - 1)};
+  return state_->meshes.add_static_mesh(positions, normals, triangles);
 }
 
 void Renderer::render(const FrameDescription& frame) {
@@ -954,21 +541,22 @@ void Renderer::render(const FrameDescription& frame) {
   const GladGLContext& gl = state.gl;
   state.upload_frame(frame);
   gl.Enable(GL_DEPTH_TEST);
-  gl.BindTexture(GL_TEXTURE_2D, state.shadow_map.name());
+  gl.BindTexture(GL_TEXTURE_2D, state.targets->shadow_map());
   const PixelRect part = state.part_to_draw(frame.changes, state.has_picture);
   if (part.left < part.right && part.top < part.bottom) {
     state.draw_shadow_map(frame);
     gl.Enable(GL_SCISSOR_TEST);
-    gl.Scissor(part.left, state.height - part.bottom, part.right - part.left, part.bottom - part.top);
+    gl.Scissor(part.left, state.targets->height() - part.bottom, part.right - part.left,
+               part.bottom - part.top);
     state.draw_opaque(frame);
     state.draw_background();
     state.draw_translucent(frame);
     gl.Disable(GL_SCISSOR_TEST);
-    state.picture_buffers.frame->run(part, frame.light.occlusion > 0);
+    state.targets->frame().run(part, frame.light.occlusion > 0);
     state.has_picture = true;
   }
 
-  state.show(state.picture_buffers.frame->picture());
+  state.targets->show(state.targets->frame().picture());
 }
 
 Shape2dId Renderer::add_shape(std::span<const Triangle> triangles) {
@@ -991,37 +579,29 @@ void Renderer::render(const Frame2d& frame) {
   if (state.painter_2d == nullptr) state.painter_2d = std::make_unique<Painter2d>(state.gl);
   state.painter_2d->check(frame);
   for (const Shape2d& shape : frame.shapes) {
-    if (shape.texture) state.texture(*shape.texture);
+    if (shape.texture) state.meshes.texture(*shape.texture);
   }
   const PixelRect part = state.part_to_draw(frame.changes, state.has_picture_2d);
   if (part.left < part.right && part.top < part.bottom) {
-    state.painter_2d->draw(frame, {.width = state.width, .height = state.height, .part = part},
-                           [&](TextureId id) { return state.texture(id).name(); });
+    state.painter_2d->draw(frame,
+                           {.width = state.targets->width(), .height = state.targets->height(), .part = part},
+                           [&](TextureId id) { return state.meshes.texture(id).name(); });
     state.has_picture_2d = true;
   }
-  state.show(state.painter_2d->framebuffer());
+  state.targets->show(state.painter_2d->framebuffer());
 }
 
 const Image& Renderer::pixels() {
-  State& state = *state_;
-  state.context.make_current();
-  state.gl.BindFramebuffer(GL_READ_FRAMEBUFFER, state.picture_buffers.shown_framebuffer.name());
-  state.gl.ReadPixels(0, 0, state.width, state.height, GL_RGBA, GL_UNSIGNED_BYTE, state.picture.rgba.data());
-  // OpenGL counts rows from the bottom.
-  const std::ptrdiff_t row_bytes = std::ptrdiff_t{4} * state.width;
-  for (int y = 0; y < state.height / 2; ++y) {
-    std::uint8_t* const upper = state.picture.pixel(0, y);
-    std::swap_ranges(upper, upper + row_bytes, state.picture.pixel(0, state.height - 1 - y));
-  }
-  return state.picture;
+  state_->context.make_current();
+  return state_->targets->pixels();
 }
 
 void Renderer::draw_overlay(const OverlayFont& font, const OverlayMesh& mesh, const Image* sheet) {
   State& state = *state_;
   state.context.make_current();
   if (state.overlay == nullptr) state.overlay = std::make_unique<OverlayPainter>(state.gl);
-  state.gl.BindFramebuffer(GL_FRAMEBUFFER, state.picture_buffers.shown_framebuffer.name());
-  state.overlay->draw(font, sheet, mesh, state.width, state.height);
+  state.gl.BindFramebuffer(GL_FRAMEBUFFER, state.targets->shown_framebuffer());
+  state.overlay->draw(font, sheet, mesh, state.targets->width(), state.targets->height());
 }
 
 void Renderer::present(int width, int height) {
@@ -1029,24 +609,25 @@ void Renderer::present(int width, int height) {
   State& state = *state_;
   state.context.make_current();
   const GladGLContext& gl = state.gl;
-  gl.BindFramebuffer(GL_READ_FRAMEBUFFER, state.picture_buffers.shown_framebuffer.name());
+  gl.BindFramebuffer(GL_READ_FRAMEBUFFER, state.targets->shown_framebuffer());
   gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
-  const bool same = width == state.width && height == state.height;
-  gl.BlitFramebuffer(0, 0, state.width, state.height, 0, 0, width, height, GL_COLOR_BUFFER_BIT,
-                     same ? GL_NEAREST : GL_LINEAR);
+  const bool same = width == state.targets->width() && height == state.targets->height();
+  gl.BlitFramebuffer(0, 0, state.targets->width(), state.targets->height(), 0, 0, width, height,
+                     GL_COLOR_BUFFER_BIT, same ? GL_NEAREST : GL_LINEAR);
 }
 
 void Renderer::resize(int width, int height) {
   State& state = *state_;
-  if (width == state.width && height == state.height) return;
-  for (const int side : {width, height}) state.require_drawable(side);
+  if (width == state.targets->width() && height == state.targets->height()) return;
+  for (const int side : {width, height}) state.targets->require_drawable(side);
   state.context.make_current();
-  state.make_picture_buffers(width, height);
+  state.targets->resize(width, height);
+  state.has_picture = state.has_picture_2d = false;
 }
 
-int Renderer::width() const { return state_->width; }
-int Renderer::height() const { return state_->height; }
+int Renderer::width() const { return state_->targets->width(); }
+int Renderer::height() const { return state_->targets->height(); }
 
-const char* Renderer::description() const { return state_->description.c_str(); }
+const char* Renderer::description() const { return state_->targets->description().c_str(); }
 
 }  // namespace softcell::render

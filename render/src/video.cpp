@@ -79,14 +79,14 @@ std::vector<std::string> encoding(VideoFormat format) {
     return words;
   };
   switch (format) {
-    case VideoFormat::mp4:
+    case VideoFormat::kMp4:
       // The index at the front: a browser plays it while it loads.
       return in_bt709(
           {"-c:v", "libx264", "-preset", "veryfast", "-crf", "18", "-movflags", "+faststart", "-f", "mp4"});
-    case VideoFormat::webm:
+    case VideoFormat::kWebm:
       return in_bt709({"-c:v", "libvpx-vp9", "-crf", "22", "-b:v", "0", "-deadline", "good", "-cpu-used", "5",
                        "-f", "webm"});
-    case VideoFormat::gif:
+    case VideoFormat::kGif:
       // A palette for each frame: one for all would need all frames in memory. Ordered dither, so that what stands
       // still stays still. No differences between frames: they would be of numbers, whatever the palettes.
       return {"-filter_complex",
@@ -96,7 +96,7 @@ std::vector<std::string> encoding(VideoFormat format) {
               "0",
               "-f",
               "gif"};
-    case VideoFormat::apng:
+    case VideoFormat::kApng:
       return {"-vf", "format=rgb24", "-c:v", "apng", "-pred", "mixed", "-plays", "0", "-f", "apng"};
   }
   return {};
@@ -132,16 +132,16 @@ VideoFormat format_of(const std::filesystem::path& path) {
 std::optional<VideoFormat> video_format(const std::filesystem::path& path) {
   std::string ending = path.extension().string();
   for (char& c : ending) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
-  for (const auto& [name, format] : {std::pair(".mp4", VideoFormat::mp4),
-                                     {".webm", VideoFormat::webm},
-                                     {".gif", VideoFormat::gif},
-                                     {".apng", VideoFormat::apng}}) {
+  for (const auto& [name, format] : {std::pair(".mp4", VideoFormat::kMp4),
+                                     {".webm", VideoFormat::kWebm},
+                                     {".gif", VideoFormat::kGif},
+                                     {".apng", VideoFormat::kApng}}) {
     if (ending == name) return format;
   }
   return std::nullopt;
 }
 
-int highest_frame_rate(VideoFormat format) { return format == VideoFormat::gif ? 50 : 60; }
+int highest_frame_rate(VideoFormat format) { return format == VideoFormat::kGif ? 50 : 60; }
 
 struct VideoWriter::Encoder {
   Encoder(const std::filesystem::path& video_path, int frame_width, int frame_height, int rate)

@@ -201,7 +201,7 @@ begin = 2
   EXPECT_EQ(box.mass, 4);
   EXPECT_EQ(box.position, Eigen::Vector3f(5, 6, 7));
   EXPECT_EQ(box.opacity, 0.75f);
-  EXPECT_EQ(box.pattern, render::Pattern::tiles);
+  EXPECT_EQ(box.pattern, render::Pattern::kTiles);
   EXPECT_EQ(box.colour, render::srgb(0xFFFFFF));
   ASSERT_EQ(scene.obstacles.size(), 1u);
   EXPECT_EQ(ppu::bounds(scene.obstacles[0].mesh).high.y(), 1);

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The pages are true as far as a program can tell: links lead somewhere, the sources that they name exist, the walks of architecture.md are as the code is, its tables of
+"""The pages are true as far as a program can tell: links lead somewhere, the sources that they and comments name exist, the walks of architecture.md are as the code is, its tables of
 rooms are as those of ci/check-layers.
 
     check_pages.py [--links] ROOT
@@ -60,6 +60,21 @@ def missing_sources(root):
                 yield f"{page.relative_to(root)}: {name} is no file"
 
 
+def missing_sources_of_comments(root):
+    """Of comments that name a source by its folders: `surfaces/obstacle.h`. The comments of kernels are left alone, as executables state the hash of these sources."""
+    of_others = {"GL/osmesa.h"}
+    folders = [root / name for name in ("base", "demos", "dma", "examples", "ls_sim", "ppu", "render", "spu_kernels", "tests", "tool")]
+    files = [file for folder in folders for file in folder.rglob("*.*")]
+    known = ["/" + str(file.relative_to(root)) for file in files]
+    for file in files:
+        if file.suffix not in (".h", ".cpp", ".def") or file.is_relative_to(root / "spu_kernels"):
+            continue
+        comments = " ".join(re.findall(r"^(?!\s*#).*?//(.*)$", file.read_text(errors="ignore"), flags=re.M))
+        for name in sorted(set(re.findall(r"(?<![\w/.<-])\w+(?:/\w+)+\.(?:h|cpp|def)\b", comments)) - of_others):
+            if not any(path.endswith("/" + name) for path in known):
+                yield f"{file.relative_to(root)}: {name}, in a comment, is no file"
+
+
 def wrong_walks(root):
     text = (root / "docs/reference/architecture.md").read_text()
     part = text[text.index("## Walks through the code\n"):]
@@ -108,6 +123,7 @@ def main():
     if "--links" not in sys.argv:
         wrong += missing_pages(root)
         wrong += missing_sources(root)
+        wrong += missing_sources_of_comments(root)
         wrong += wrong_walks(root)
         wrong += wrong_rooms(root)
     print("\n".join(wrong))

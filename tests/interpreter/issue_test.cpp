@@ -23,8 +23,7 @@ std::vector<ListedInstruction> listed(const KernelImage& image) {
 }
 
 /// The inner loop of the particle system in IBM's tutorial (static analysis of SPE threads), from the listing's
-/// cycle 47 on. Two dependencies of the listing come from before its first line; the shape is that of cell.md's check
-/// vector.
+/// cycle 47 on. Two dependencies of the listing come from before its first line.
 const std::vector<std::uint32_t> kPublishedLoop = {
     rr(a, 49, 8, 10),            // 47 D
     rr(lqx, 51, 6, 9),           // 47 D

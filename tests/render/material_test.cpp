@@ -107,14 +107,14 @@ TEST_F(MaterialTest, ColoursOfVerticesAreMultiplied) {
 TEST_F(MaterialTest, AMaskCutsAndItsAlphaIsOfAllFactors) {
   const TextureId half = renderer_.add_texture(plain_picture({255, 255, 255, 128}));
   EXPECT_GT(sum(draw(Material{.base_texture = half})), 300) << "alpha is not used";
-  EXPECT_GT(sum(draw(Material{.base_texture = half, .alpha_mode = AlphaMode::mask, .alpha_cutoff = 0.4f})),
+  EXPECT_GT(sum(draw(Material{.base_texture = half, .alpha_mode = AlphaMode::kMask, .alpha_cutoff = 0.4f})),
             300);
-  EXPECT_EQ(sum(draw(Material{.base_texture = half, .alpha_mode = AlphaMode::mask, .alpha_cutoff = 0.6f})),
+  EXPECT_EQ(sum(draw(Material{.base_texture = half, .alpha_mode = AlphaMode::kMask, .alpha_cutoff = 0.6f})),
             0);
   EXPECT_EQ(sum(draw(Material{
-                .alpha = 0.5f, .base_texture = half, .alpha_mode = AlphaMode::mask, .alpha_cutoff = 0.4f})),
+                .alpha = 0.5f, .base_texture = half, .alpha_mode = AlphaMode::kMask, .alpha_cutoff = 0.4f})),
             0);
-  const int blended = sum(draw(Material{.base_texture = half, .alpha_mode = AlphaMode::blend}));
+  const int blended = sum(draw(Material{.base_texture = half, .alpha_mode = AlphaMode::kBlend}));
   EXPECT_GT(blended, 150);
   EXPECT_LT(blended, sum(draw(Material{.base_texture = half})) - 50);
 }
@@ -234,9 +234,9 @@ TEST_F(MaterialTest, LinearTexturesAreNotDecodedAndClampedOnesEnd) {
     const std::uint8_t* const pixel = renderer_.pixels().pixel(kPixels / 4, kPixels / 2);
     return pixel[0] > pixel[2] ? 'r' : 'b';
   };
-  EXPECT_EQ(beyond(Wrap::repeat), 'r');
-  EXPECT_EQ(beyond(Wrap::mirror), 'b');
-  EXPECT_EQ(beyond(Wrap::clamp), 'b');
+  EXPECT_EQ(beyond(Wrap::kRepeat), 'r');
+  EXPECT_EQ(beyond(Wrap::kMirror), 'b');
+  EXPECT_EQ(beyond(Wrap::kClamp), 'b');
 }
 
 TEST_F(MaterialTest, StaticMeshesHavePartsToo) {

@@ -35,7 +35,7 @@ Image noise(int width, int height, bool opaque) {
 TEST(Png, RoundTripKeepsEveryChannel) {
   const TemporaryDirectory directory;
   for (const bool opaque : {true, false}) {
-    for (const PngEffort effort : {PngEffort::fast, PngEffort::small}) {
+    for (const PngEffort effort : {PngEffort::kFast, PngEffort::kSmall}) {
       const Image image = noise(37, 21, opaque);
       write_png(directory / "picture.png", image, effort);
       EXPECT_EQ(read_png(directory / "picture.png"), image) << "opaque " << opaque;
@@ -48,7 +48,7 @@ TEST(Png, KeepsTextsOfAnyAlphabet) {
   const TemporaryDirectory directory;
   const std::vector<PngText> texts{
       {"Software", "softcell"}, {"Scene", "l\xC3\xA4mmchen \xF0\x9F\x90\x91"}, {"Command", ""}};
-  write_png(directory / "picture.png", noise(9, 5, true), PngEffort::fast, texts);
+  write_png(directory / "picture.png", noise(9, 5, true), PngEffort::kFast, texts);
   const std::vector<PngText> read = read_png_texts(directory / "picture.png");
   ASSERT_EQ(read.size(), texts.size());
   for (std::size_t i = 0; i < texts.size(); ++i) {
@@ -111,8 +111,8 @@ TEST(Png, SmallIsSmallerThanFastForAPlainPicture) {
   for (int y = 0; y < 200; ++y) {
     for (int x = 0; x < 200; ++x) image.pixel(x, y)[0] = static_cast<std::uint8_t>(x ^ y);
   }
-  write_png(directory / "fast.png", image, PngEffort::fast);
-  write_png(directory / "small.png", image, PngEffort::small);
+  write_png(directory / "fast.png", image, PngEffort::kFast);
+  write_png(directory / "small.png", image, PngEffort::kSmall);
   EXPECT_LT(std::filesystem::file_size(directory / "small.png"),
             std::filesystem::file_size(directory / "fast.png"));
 }

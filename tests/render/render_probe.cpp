@@ -21,7 +21,7 @@ namespace {
 using namespace softcell::render;
 
 struct Options {
-  Backend backend = Backend::osmesa;
+  Backend backend = Backend::kOsmesa;
   RendererSettings renderer{.width = 320, .height = 180};
   int detail = 1;
   int frames = 0;
@@ -34,7 +34,7 @@ Options parse(int argc, char** argv) {
   for (int i = 1; i < argc; ++i) {
     const std::string word = argv[i];
     const auto number = [&] { return i + 1 < argc ? std::atoi(argv[++i]) : 0; };
-    if (word == "egl") options.backend = Backend::egl;
+    if (word == "egl") options.backend = Backend::kEgl;
     if (word == "--occlusion") options.renderer.occlusion_pixels = number();
     if (word == "--quick") options.renderer.soft_shadows = false;
     if (word == "--native") options.pinned = false;
@@ -65,7 +65,7 @@ void run(const Options& options) {
   const test::TestScene scene(renderer, options.detail);
   renderer.render(scene.frame());
   const Image& image = renderer.pixels();
-  if (!options.out.empty()) write_png(options.out, image, PngEffort::small);
+  if (!options.out.empty()) write_png(options.out, image, PngEffort::kSmall);
   std::printf("%016llx %s\n", static_cast<unsigned long long>(image_hash(image)), renderer.description());
   if (options.frames > 0)
     std::printf("%.1f ms a frame\n", milliseconds_per_frame(renderer, scene.frame(), options.frames));

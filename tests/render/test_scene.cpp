@@ -148,7 +148,7 @@ TestScene::TestScene(Renderer& renderer, int detail) {
   StaticDraw floor;
   floor.mesh = renderer.add_static_mesh(corners, up, halves);
   floor.colour = srgb(0xC9CCD1);
-  floor.pattern = Pattern::tiles;
+  floor.pattern = Pattern::kTiles;
   statics_.push_back(floor);
 
   const StaticMeshId box = add_unit_box(renderer);

@@ -189,11 +189,11 @@ TEST_F(VideoWithFfmpeg, SaysWhatFfmpegCannotDo) {
 }
 
 TEST(Video, KnowsFormatsByTheirEndings) {
-  EXPECT_EQ(video_format("a/b.mp4"), VideoFormat::mp4);
-  EXPECT_EQ(video_format("b.MP4"), VideoFormat::mp4);
-  EXPECT_EQ(video_format("b.webm"), VideoFormat::webm);
-  EXPECT_EQ(video_format("b.gif"), VideoFormat::gif);
-  EXPECT_EQ(video_format("b.apng"), VideoFormat::apng);
+  EXPECT_EQ(video_format("a/b.mp4"), VideoFormat::kMp4);
+  EXPECT_EQ(video_format("b.MP4"), VideoFormat::kMp4);
+  EXPECT_EQ(video_format("b.webm"), VideoFormat::kWebm);
+  EXPECT_EQ(video_format("b.gif"), VideoFormat::kGif);
+  EXPECT_EQ(video_format("b.apng"), VideoFormat::kApng);
   for (const char* const other : {"b.avi", "b", ".mp4", "gif", ""})
     EXPECT_FALSE(video_format(other)) << other;
   const TemporaryDirectory directory;

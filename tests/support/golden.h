@@ -34,14 +34,14 @@ inline testing::AssertionResult compare_with_golden(const render::Image& actual,
   const auto keep = [&](const char* kind, const render::Image& image) {
     std::filesystem::create_directories(folders.failures);
     const std::filesystem::path path = folders.failures / (name + "." + kind + ".png");
-    render::write_png(path, image, render::PngEffort::small);
+    render::write_png(path, image, render::PngEffort::kSmall);
     return "\n  " + path.string();
   };
   try {
     const char* const update = std::getenv("SOFTCELL_UPDATE_GOLDENS");
     if (update != nullptr && std::string(update) == "1") {
       std::filesystem::create_directories(folders.golden);
-      render::write_png(golden, actual, render::PngEffort::small);
+      render::write_png(golden, actual, render::PngEffort::kSmall);
       return testing::AssertionSuccess() << "wrote " << golden.string();
     }
     if (!std::filesystem::exists(golden)) {

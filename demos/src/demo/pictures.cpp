@@ -21,7 +21,7 @@ FilmRate::FilmRate(int per_second) : per_second_(per_second) {
 
 FilmRate FilmRate::usual(const std::filesystem::path& video) {
   constexpr int kOfGif = 20;
-  return FilmRate(render::video_format(video) == render::VideoFormat::gif ? kOfGif : kFramesPerSecond);
+  return FilmRate(render::video_format(video) == render::VideoFormat::kGif ? kOfGif : kFramesPerSecond);
 }
 
 bool FilmRate::shows(int frame) const {
@@ -68,7 +68,7 @@ void FrameFolder::write(int frame, const render::Image& image, std::span<const r
   SC_ASSERT(frame >= 0, "the picture of frame {} has no name", frame);
   std::vector<render::PngText> all(texts.begin(), texts.end());
   all.push_back({"Frame", std::to_string(frame)});
-  render::write_png(folder_ / fmt::format("frame_{:05}.png", frame), image, render::PngEffort::fast, all);
+  render::write_png(folder_ / fmt::format("frame_{:05}.png", frame), image, render::PngEffort::kFast, all);
 }
 
 Pictures::Pictures(const PictureOptions& options, Demo& demo)

@@ -2,7 +2,6 @@
 // The common part of the demos of both dimensions: it steps a scene with the events of its user or of a replay, records the events, and
 // publishes and draws frames.
 
-#include <memory>
 #include <optional>
 #include <span>
 #include <stdexcept>

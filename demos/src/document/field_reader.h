@@ -12,7 +12,6 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <span>
 #include <string>

@@ -5,7 +5,6 @@
 
 #include <Eigen/Core>
 #include <array>
-#include <cstddef>
 #include <type_traits>
 #include <vector>
 

@@ -1,6 +1,6 @@
 #include "ground_tilt.h"
 
-#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "controller_hands.h"

@@ -5,7 +5,6 @@
 #include <SDL.h>
 
 #include <Eigen/Core>
-#include <array>
 #include <optional>
 
 namespace softcell::demos {

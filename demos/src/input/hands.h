@@ -2,7 +2,6 @@
 // Hands that hold particles of soft bodies, in either dimension, and pull them.
 
 #include <Eigen/Core>
-#include <algorithm>
 #include <cstddef>
 #include <limits>
 #include <optional>

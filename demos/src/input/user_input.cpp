@@ -1,7 +1,6 @@
 #include "user_input.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "softcell/base/assert.h"
 

@@ -3,7 +3,6 @@
 
 #include <SDL.h>
 
-#include <optional>
 #include <span>
 #include <utility>
 #include <vector>

@@ -7,7 +7,6 @@
 #include <array>
 #include <filesystem>
 #include <memory>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -46,7 +45,7 @@ struct RigidBox {
   Eigen::Quaternionf rotation = Eigen::Quaternionf::Identity();
   render::Colour colour{0.8f, 0.8f, 0.8f};
   float opacity = 1;
-  render::Pattern pattern = render::Pattern::plain;
+  render::Pattern pattern = render::Pattern::kPlain;
   bool wall = false;  ///< a wall of the framework: glass while it stands between the camera and the scene
 };
 

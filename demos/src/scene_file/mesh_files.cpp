@@ -5,7 +5,6 @@
 
 #include <set>
 #include <span>
-#include <stdexcept>
 
 #include "softcell/base/assert.h"
 

@@ -1,11 +1,8 @@
 #include "read_rigid_body.h"
 
-#include <algorithm>
 #include <array>
-#include <cmath>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "ppu/numbers/deterministic_math.h"
 #include "read_common.h"

@@ -2,7 +2,6 @@
 // The values that a user sees of a particle of which a hand has taken hold and of its region, or of a contact.
 
 #include <Eigen/Core>
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <string>

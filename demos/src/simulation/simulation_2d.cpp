@@ -11,16 +11,13 @@
 #include <array>
 #include <chrono>
 #include <cmath>
-#include <numeric>
 #include <optional>
 #include <stdexcept>
-#include <string>
 #include <variant>
 
 #include <fmt/format.h>
 
 #include "beginning_of.h"
-#include "changed_material.h"
 #include "cut_bodies.h"
 #include "describe_refusal.h"
 #include "followed_particle.h"
@@ -31,6 +28,7 @@
 #include "ppu/spe_bodies/spe_contacts.h"
 #include "rigid_grip_2d.h"
 #include "scene/shared_models.h"
+#include "scene_bodies.h"
 #include "soft_grip_2d.h"
 #include "softcell/base/assert.h"
 #include "softcell/box2d/box2d_soft_bodies.h"
@@ -242,7 +240,7 @@ struct Simulation2d::State {
     } else {
       solver.emplace(on_this_thread);
     }
-    models = models_of(scene.soft_bodies);
+    scene_bodies = SceneBodies<2>(models_of(scene.soft_bodies));
     if (scene.begin) frame = scene.begin->frames;
     reset();
   }
@@ -257,12 +255,8 @@ struct Simulation2d::State {
     if (event.body < scene.rigid_bodies.size() && scene.rigid_bodies[event.body].mass > 0)
       held.hold(event.hand, std::make_unique<RigidGrip2d>(*world->rigid_bodies[event.body], event.value));
   }
-  /// Sets the material of a body and of all of its pieces, each once.
   void set_material(const InputEvent<2>& event, std::size_t body) {
-    if (event.body != kEveryBody && body >= models.size()) return;
-    for (std::size_t b = 0; b < bodies.size(); ++b)
-      if (event.body == kEveryBody ? b == body : sources[b] == body)
-        bodies[b].set_material(changed_material(bodies[b], event, substep()));
+    scene_bodies.set_material(world->soft_bodies, event, body, substep());
   }
   /// Cuts for a user or a recording. A stroke of no length has no effect.
   void cut(const InputEvent<2>& event) {
@@ -272,30 +266,22 @@ struct Simulation2d::State {
   }
   /// Pieces appear some substeps later. In a pause, which has no substeps, they appear at once.
   void cut(const ppu::Cut2d& where, std::optional<std::size_t> source) {
-    cut_bodies(world->soft_bodies, sources, source, controls.paused(), where);
+    cut_bodies(world->soft_bodies, scene_bodies.sources(), source, controls.paused(), where);
     note_broken();
   }
   /// Call it after a step or a cut. Pieces are placed after all other bodies, and hands go on with the piece that has what they hold, if
   /// there is one.
   void note_broken() {
     const std::vector<ppu::BrokenSoftBody2d> broken = world->soft_bodies.poll_broken();
-    for (const ppu::BrokenSoftBody2d& one : broken)
-      sources.insert(sources.end(), one.pieces.size(), sources[number_of(*one.body)]);
-    SC_ASSERT(sources.size() == bodies.size(), "the sources of {} soft bodies of {}", sources.size(),
-              bodies.size());
+    scene_bodies.add_pieces(world->soft_bodies, broken);
     held.follow(broken);
     controls.follow_particles([&](std::size_t& body, std::size_t& particle) {
       FollowedParticle<2> now{&bodies[body], static_cast<std::uint32_t>(particle)};
       if (!now.follow(broken)) return true;
       if (now.body == nullptr) return false;
-      body = number_of(*now.body), particle = now.number;
+      body = number_in(bodies, *now.body), particle = now.number;
       return true;
     });
-  }
-  std::size_t number_of(const ppu::SoftBody<2>& soft) const {
-    std::size_t body = 0;
-    while (&bodies[body] != &soft) ++body;
-    return body;
   }
   int substeps_of_frame() const { return controls.substeps(scene.substeps); }
   /// Seconds per substep.
@@ -304,7 +290,7 @@ struct Simulation2d::State {
   void release(std::uint32_t hand) { held.release(hand); }
   void pin(std::uint32_t hand) {
     if (const auto part = part_held_by<2>(hand, held, controls.hands(), bodies))
-      pins.add(world->soft_bodies, sources[number_of(*part->body)], *part);
+      pins.add(world->soft_bodies, scene_bodies.source(number_in(bodies, *part->body)), *part);
   }
   void unpin(const InputEvent<2>& event) { pins.remove(world->soft_bodies, event.body); }
   void reset() {
@@ -312,32 +298,17 @@ struct Simulation2d::State {
     SC_ASSERT(solver, "scene '{}' has no solver", scene.name);
     pins.forget();
     world.reset();  // destroys its worker before the next one is made
-    world.emplace(scene, models, *solver, contacts, spes ? spes->make_contact_worker() : nullptr);
+    world.emplace(scene, scene_bodies.whole(), *solver, contacts,
+                  spes ? spes->make_contact_worker() : nullptr);
     if (scene.begin) pins.put(world->soft_bodies, scene.begin->pins);
-    sources.resize(models.size());
-    std::iota(sources.begin(), sources.end(), std::size_t{0});
+    scene_bodies.forget_pieces();
   }
   void home(std::size_t body) {
-    SC_ASSERT(body < sources.size(), "body {} of {}", body, sources.size());
-    body = sources[body];
+    body = scene_bodies.source(body);
     pins.remove(world->soft_bodies, body);
-    make_whole(body);
+    scene_bodies.make_whole(
+        world->soft_bodies, body, [this](std::size_t b) { let_go(b); }, [](std::size_t) {});
     bodies[body].reset(scene.soft_bodies[body].position);
-  }
-  /// Makes a body whole again: removes its pieces.
-  void make_whole(std::size_t body) {
-    SC_ASSERT(body < models.size(), "body {} of {} is made whole", body, models.size());
-    for (std::size_t b = bodies.size(); b-- > models.size();) {
-      if (sources[b] != body) continue;
-      let_go(b);
-      for (std::size_t after = b + 1; after < bodies.size(); ++after)
-        let_go(after);  // because their numbers change
-      world->soft_bodies.remove(bodies[b]);
-      sources.erase(sources.begin() + static_cast<std::ptrdiff_t>(b));
-    }
-    if (bodies[body].shared_model() == models[body]) return;
-    let_go(body);
-    bodies[body] = ppu::SoftBody<2>(models[body]);
   }
   void let_go(std::size_t body) {
     controls.forget_body(body);
@@ -365,9 +336,6 @@ struct Simulation2d::State {
   };
 
   const Scene2d& scene;
-  Models models;  // models of the scene's soft bodies before they break
-  // For each soft body the number of the scene's body that it is, or is a piece of. Pieces come after the scene's bodies.
-  std::vector<std::size_t> sources;
   ScriptPlayer<2> script;
   Controls<2> controls;
   const ppu::ContactMethod contacts;
@@ -377,7 +345,8 @@ struct Simulation2d::State {
   std::optional<TimedSolver<2>> solver;  // of spes, or on_this_thread
   std::optional<World> world;
   Bodies bodies{world};
-  HeldBodies<2> held;                 // of `world`
+  SceneBodies<2> scene_bodies;        // of `world`
+  HeldBodies<2> held;                 // likewise
   Pins<2> pins;                       // likewise
   std::vector<InputEvent<2>> events;  // of the last step
   std::int64_t frame = 0;             // of the script; a reset does not restart it
@@ -441,7 +410,7 @@ std::vector<ls_sim::SpeStatistics> Simulation2d::spe_statistics() const {
 std::span<const InputEvent<2>> Simulation2d::last_events() const { return state_->events; }
 
 std::size_t Simulation2d::soft_bodies() const { return state_->bodies.size(); }
-std::size_t Simulation2d::source(std::size_t body) const { return state_->sources.at(body); }
+std::size_t Simulation2d::source(std::size_t body) const { return state_->scene_bodies.sources().at(body); }
 std::size_t Simulation2d::bodies_on_ppu() const {
   return state_->spes ? state_->spes->solver.bodies_on_ppu() : soft_bodies();
 }
@@ -520,7 +489,7 @@ const Vector2f& Simulation2d::gravity() const { return state_->controls.gravity(
 void Simulation2d::show(Shown2d& shown) const {
   shown.particles.resize(soft_bodies());
   shown.models.resize(soft_bodies());
-  shown.sources = state_->sources;
+  shown.sources = state_->scene_bodies.sources();
   for (std::size_t b = 0; b < soft_bodies(); ++b) {
     const auto positions = soft_body(b).positions();
     shown.particles[b].assign(positions.begin(), positions.end());
@@ -552,10 +521,8 @@ void Simulation2d::show(Shown2d& shown) const {
 
 Beginning<2> Simulation2d::moment() const {
   const State& s = *state_;
-  for (std::size_t b = 0; b < soft_bodies(); ++b)
-    if (soft_body(b).shared_model() != s.models[s.sources[b]] ||
-        s.world->soft_bodies.is_breaking(soft_body(b)))
-      throw std::runtime_error(has_broken(s.scene.name, s.scene.soft_bodies[s.sources[b]].name));
+  if (const auto broken = s.scene_bodies.first_broken(s.world->soft_bodies))
+    throw std::runtime_error(has_broken(s.scene.name, s.scene.soft_bodies[*broken].name));
   Beginning<2> now{.gravity = s.controls.gravity(),
                    .tilt = {},
                    .time_scale = s.controls.time_scale(),

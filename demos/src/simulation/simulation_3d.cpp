@@ -3,7 +3,7 @@
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
 #include <algorithm>
-#include <array>
+#include <chrono>
 #include <cmath>
 #include <numbers>
 #include <optional>
@@ -13,7 +13,6 @@
 #include <fmt/format.h>
 
 #include "beginning_of.h"
-#include "changed_material.h"
 #include "cut_bodies.h"
 #include "describe_refusal.h"
 #include "held_bodies.h"
@@ -21,11 +20,12 @@
 #include "input/script_player.h"
 #include "pins.h"
 #include "ppu/bullet/bullet_world.h"
-#include "ppu/bullet/processor_time.h"
 #include "ppu/numbers/deterministic_math.h"
 #include "ppu/spe_bodies/spe_contacts.h"
 #include "rigid_grip.h"
 #include "scene/shared_models.h"
+#include "scene_bodies.h"
+#include "snapshots_3d.h"
 #include "softcell/base/assert.h"
 #include "softcell/bullet/bullet_soft_bodies.h"
 #include "softcell/soft_bodies/fracture.h"
@@ -113,19 +113,6 @@ std::vector<std::shared_ptr<const ppu::SoftBodyModel<3>>> models_of(
 }  // namespace
 
 struct Simulation3d::State {
-  /// What a picture needs besides the vertices, from the moment at which these were handed to the SPEs.
-  struct Snapshot {
-    std::vector<Eigen::Matrix4f> box_poses;
-    std::vector<std::vector<Eigen::Vector4f>> particles;               // of each soft body
-    std::vector<std::shared_ptr<const ppu::SoftBodyModel<3>>> models;  // likewise
-    std::vector<std::size_t> sources;                                  // likewise
-    std::vector<Eigen::Vector3f> origins;                              // of vertices made by the GPU
-    std::vector<ppu::Contact> contacts;
-    std::vector<std::array<Eigen::Vector3f, 2>> hands;
-    std::vector<ShownRope<3>> ropes;
-    Eigen::Matrix3f tilt = Eigen::Matrix3f::Identity();
-  };
-
   State(const Scene& scene_description, const SimulationOptions& options)
       : scene(scene_description),
         script(scene.script),
@@ -142,7 +129,7 @@ struct Simulation3d::State {
     if (scene.sleep) soft_bodies.let_sleep(ppu::SleepSettings{});
     if (options.skin == Skin::kSpe) {
       skin = options.kernel("skin");
-      orchestrator.emplace(memory, jobs, *skin);
+      snapshots.skin_on_spes(memory, jobs, *skin);
     }
     SC_ASSERT(scene.substeps > 0, "{} substeps in a frame of scene '{}'", scene.substeps, scene.name);
     for (const RigidBox& box : scene.boxes) {
@@ -160,20 +147,19 @@ struct Simulation3d::State {
     }
     for (const Obstacle& obstacle : scene.obstacles)
       world.add_convex(obstacle.mesh, obstacle.position, scene.friction, scene.restitution);
-    whole = models_of(scene.soft_bodies);
-    for (std::size_t i = 0; i < whole.size(); ++i) {
+    scene_bodies = SceneBodies<3>(models_of(scene.soft_bodies));
+    for (std::size_t i = 0; i < scene_bodies.size(); ++i) {
       const SoftBodyPlacement& placement = scene.soft_bodies[i];
-      describe_refusal(placement.described,
-                       [&] { twist(soft_bodies.add(whole[i], placement.position), placement.twist); });
-      sources.push_back(i);
+      describe_refusal(placement.described, [&] {
+        twist(soft_bodies.add(scene_bodies.whole()[i], placement.position), placement.twist);
+      });
     }
     check_cuts();
     attach();
     begin();
-    for (Snapshot& snapshot : snapshots) snapshot.box_poses.resize(boxes.size());
-    follow_bodies();
+    snapshots.follow(soft_bodies);
     hand_over();
-    take_over();
+    snapshots.take_over();
   }
 
   /// The contacts of the bodies are computed where the bodies are stepped.
@@ -299,9 +285,8 @@ struct Simulation3d::State {
     pins.put(soft_bodies, scene.begin->pins);
   }
   Beginning<3> moment() const {
-    for (std::size_t b = 0; b < soft_bodies.size(); ++b)
-      if (soft_bodies[b].shared_model() != whole[sources[b]] || soft_bodies.is_breaking(soft_bodies[b]))
-        throw std::runtime_error(has_broken(scene.name, scene.soft_bodies[sources[b]].name));
+    if (const auto broken = scene_bodies.first_broken(soft_bodies))
+      throw std::runtime_error(has_broken(scene.name, scene.soft_bodies[*broken].name));
     Beginning<3> now{.gravity = controls.gravity(),
                      .tilt = controls.tilt(),
                      .time_scale = controls.time_scale(),
@@ -327,97 +312,26 @@ struct Simulation3d::State {
   /// Copies what a picture needs and starts the SPEs: first with the dynamics of the next step, then with the skinning. They work while the
   /// previous frame is drawn.
   void hand_over() {
-    SC_ASSERT(!handed_over, "frame {} is handed over before the one before is taken", frame);
-    Snapshot& snapshot = snapshots[static_cast<std::size_t>(1 - newest)];
-    for (std::size_t i = 0; i < boxes.size(); ++i) snapshot.box_poses[i] = world.pose(boxes[i]);
-    snapshot.tilt = tilt;
-    copy_contacts(snapshot);
-    copy_hands(snapshot);
-    copy_ropes(snapshot);
-    if (orchestrator) {
-      copy_particles(snapshot);
-      const auto before = ppu::processor_time();
-      orchestrator->kick(positions);
-      skin_time = ppu::processor_time() - before;
-    } else {
-      const auto before = ppu::processor_time();
-      copy_particles(snapshot);
-      for (std::size_t b = 0; b < positions.size(); ++b) snapshot.origins[b] = ppu::skin_origin(positions[b]);
-      skin_time = ppu::processor_time() - before;
-    }
-    handed_over = true;
+    Snapshot3d& next = snapshots.next();
+    next.box_poses.resize(boxes.size());
+    for (std::size_t i = 0; i < boxes.size(); ++i) next.box_poses[i] = world.pose(boxes[i]);
+    next.tilt = tilt;
+    copy_contacts(next);
+    copy_hands(next);
+    copy_ropes(next);
+    snapshots.hand_over(scene_bodies.sources());
     soft_bodies.begin_ahead(substep());
-  }
-
-  void copy_particles(Snapshot& snapshot) const {
-    snapshot.particles.resize(positions.size());
-    for (std::size_t b = 0; b < positions.size(); ++b)
-      snapshot.particles[b].assign(positions[b].begin(), positions[b].end());
-    snapshot.models = drawn;
-    snapshot.sources = sources;
-    snapshot.origins.resize(positions.size());
   }
 
   /// Call it after a substep or a cut. Pieces are placed after all other bodies, and hands let go of what has broken.
   void note_broken() {
-    for (const ppu::BrokenSoftBody& broken : soft_bodies.poll_broken()) {
-      const std::size_t body = number_of(*broken.body);
-      sources.insert(sources.end(), broken.pieces.size(), sources[body]);
-      let_go(body);
-    }
-    SC_ASSERT(sources.size() == soft_bodies.size(), "the sources of {} soft bodies of {}", sources.size(),
-              soft_bodies.size());
-  }
-  std::size_t number_of(const ppu::SoftBody<3>& soft) const {
-    std::size_t body = 0;
-    while (&soft_bodies[body] != &soft) ++body;
-    return body;
+    const std::vector<ppu::BrokenSoftBody> broken = soft_bodies.poll_broken();
+    scene_bodies.add_pieces(soft_bodies, broken);
+    for (const ppu::BrokenSoftBody& one : broken) let_go(number_in(soft_bodies, *one.body));
   }
   void let_go(std::size_t body) {
     controls.forget_body(body);
     held.forget(&soft_bodies[body]);
-  }
-
-  /// Updates what is drawn to the present bodies and their models. @return whether anything has changed
-  bool follow_bodies() {
-    const std::size_t before = drawn.size();
-    bool changed = before != soft_bodies.size();
-    drawn.resize(soft_bodies.size());
-    positions.resize(soft_bodies.size());
-    vertices = 0;
-    for (std::size_t b = 0; b < soft_bodies.size(); ++b) {
-      const auto& model = soft_bodies[b].shared_model();
-      positions[b] = soft_bodies[b].padded_positions();
-      vertices += model->embedding().slot_of_vertex.size();
-      if (drawn[b] == model) continue;
-      changed = true;
-      drawn[b] = model;
-      if (!orchestrator) continue;
-      const std::shared_ptr<const ppu::Embedding> embedding(model, &model->embedding());
-      if (b < before)
-        orchestrator->replace(b, embedding, model->particles());
-      else
-        orchestrator->add(embedding, model->particles());
-    }
-    return changed;
-  }
-
-  /// Makes a body whole again: removes its pieces.
-  void make_whole(std::size_t body) {
-    SC_ASSERT(body < whole.size(), "body {} of {} is made whole", body, whole.size());
-    for (std::size_t b = soft_bodies.size(); b-- > whole.size();) {
-      if (sources[b] != body) continue;
-      let_go(b);
-      for (std::size_t after = b + 1; after < soft_bodies.size(); ++after)
-        let_go(after);  // because their numbers change
-      soft_bodies.remove(soft_bodies[b]);
-      sources.erase(sources.begin() + static_cast<std::ptrdiff_t>(b));
-      drawn.erase(drawn.begin() + static_cast<std::ptrdiff_t>(b));
-      if (orchestrator) orchestrator->remove(b);
-    }
-    if (soft_bodies[body].shared_model() == whole[body]) return;
-    let_go(body);
-    soft_bodies[body] = ppu::SoftBody<3>(whole[body]);
   }
 
   /// Refuses a scene that could not be played to its end. @throws std::runtime_error  a cut of a body that does not break
@@ -433,11 +347,11 @@ struct Simulation3d::State {
 
   /// Pieces appear some substeps later. In a pause, which has no substeps, they appear at once.
   void cut(const ppu::Cut& where, std::optional<std::size_t> source) {
-    cut_bodies(soft_bodies, sources, source, controls.paused(), where);
+    cut_bodies(soft_bodies, scene_bodies.sources(), source, controls.paused(), where);
     note_broken();
   }
 
-  void copy_contacts(Snapshot& snapshot) const {
+  void copy_contacts(Snapshot3d& snapshot) const {
     snapshot.contacts.clear();
     if (records_contacts && contacts_stand) {
       world.contacts(snapshot.contacts);
@@ -446,7 +360,7 @@ struct Simulation3d::State {
   }
 
   /// A script's hands that hold particles are not shown: they only arrange the scene.
-  void copy_hands(Snapshot& snapshot) const {
+  void copy_hands(Snapshot3d& snapshot) const {
     snapshot.hands.clear();
     for (const Hands<3>::Held& hand : controls.hands().held()) {
       if (is_users_hand(hand.hand))
@@ -455,7 +369,7 @@ struct Simulation3d::State {
     held.append(snapshot.hands);
   }
 
-  void copy_ropes(Snapshot& snapshot) const {
+  void copy_ropes(Snapshot3d& snapshot) const {
     snapshot.ropes.clear();
     for (std::size_t i = 0; i < attachments.size(); ++i) {
       const AttachmentPlacement<3>& placement = scene.attachments[i];
@@ -469,14 +383,6 @@ struct Simulation3d::State {
     pins.append(soft_bodies, snapshot.ropes);
   }
 
-  /// Waits for the SPEs. What was handed over is the shown frame from then on.
-  void take_over() {
-    if (!handed_over) return;
-    handed_over = false;
-    if (orchestrator) orchestrator->drain();
-    newest = 1 - newest;
-  }
-
   // For Controls:
   void hold(const InputEvent<3>& event) {
     if (const auto nearest = Hands<3>::nearest_particle(event, soft_bodies))
@@ -486,12 +392,8 @@ struct Simulation3d::State {
     if (event.body < boxes.size() && mass_of(event.body) > 0)
       held.hold(event.hand, std::make_unique<RigidGrip>(world.rigid_body(boxes[event.body]), event.value));
   }
-  /// Sets the material of a body and of all of its pieces, each once.
   void set_material(const InputEvent<3>& event, std::size_t body) {
-    if (event.body != kEveryBody && body >= whole.size()) return;
-    for (std::size_t b = 0; b < soft_bodies.size(); ++b)
-      if (event.body == kEveryBody ? b == body : sources[b] == body)
-        soft_bodies[b].set_material(changed_material(soft_bodies[b], event, substep()));
+    scene_bodies.set_material(soft_bodies, event, body, substep());
   }
   /// Cuts for a user or a recording. No effect: a blade without area, and bodies whose contacts are spheres, which cannot be cut.
   void cut(const InputEvent<3>& event) {
@@ -506,7 +408,7 @@ struct Simulation3d::State {
   void pin(std::uint32_t hand) {
     if (contacts == ppu::ContactMethod::kSpheres) return;
     if (const auto part = part_held_by<3>(hand, held, controls.hands(), soft_bodies))
-      pins.add(soft_bodies, sources[number_of(*part->body)], *part);
+      pins.add(soft_bodies, scene_bodies.source(number_in(soft_bodies, *part->body)), *part);
   }
   void unpin(const InputEvent<3>& event) { pins.remove(soft_bodies, event.body); }
 
@@ -537,7 +439,7 @@ struct Simulation3d::State {
   void reset() {
     held.release_all();
     world.reset();
-    for (std::size_t b = 0; b < whole.size(); ++b) home(b);
+    for (std::size_t b = 0; b < scene_bodies.size(); ++b) home(b);
     for (std::size_t b = 0; b < soft_bodies.size(); ++b)
       soft_bodies[b].set_material(soft_bodies[b].model().settings());
     for (const ppu::AttachmentId id : attachments)
@@ -547,15 +449,14 @@ struct Simulation3d::State {
     begin_again();
   }
   void home(std::size_t body) {
-    SC_ASSERT(body < soft_bodies.size(), "body {} of {}", body, soft_bodies.size());
-    body = sources[body];
+    body = scene_bodies.source(body);
     pins.remove(soft_bodies, body);
-    make_whole(body);
+    scene_bodies.make_whole(
+        soft_bodies, body, [this](std::size_t b) { let_go(b); },
+        [this](std::size_t b) { snapshots.remove(b); });
     soft_bodies[body].reset(scene.soft_bodies[body].position);
     twist(soft_bodies[body], scene.soft_bodies[body].twist);
   }
-
-  const Snapshot& shown() const { return snapshots[static_cast<std::size_t>(newest)]; }
 
   const Scene& scene;
   ScriptPlayer<3> script;
@@ -573,28 +474,18 @@ struct Simulation3d::State {
   std::unique_ptr<ppu::SoftBodySolver<3>> solver;
   const ppu::ContactMethod contacts;
   ppu::BulletSoftBodies soft_bodies;
-  std::vector<ppu::AttachmentId> attachments;         // of the scene, in order
-  std::optional<ppu::SkinOrchestrator> orchestrator;  // likewise
-  std::vector<std::shared_ptr<const ppu::SoftBodyModel<3>>>
-      whole;  // models of the scene's soft bodies before they break
-  // One for each soft body; pieces of broken bodies come after the scene's bodies:
-  std::vector<std::size_t> sources;  // number of the scene's body that it is, or is a piece of
-  std::vector<std::shared_ptr<const ppu::SoftBodyModel<3>>> drawn;
-  std::vector<std::span<const Eigen::Vector4f>> positions;
-  std::size_t vertices = 0;
-  HeldBodies<3> held;  // of `soft_bodies` and `world`
-  Pins<3> pins;        // of `soft_bodies`
+  std::vector<ppu::AttachmentId> attachments;  // of the scene, in order
+  Snapshots3d snapshots;
+  SceneBodies<3> scene_bodies;  // of `soft_bodies`
+  HeldBodies<3> held;           // of `soft_bodies` and `world`
+  Pins<3> pins;                 // of `soft_bodies`
   bool records_contacts = false;
   bool contacts_stand = true;  // false: bodies were put elsewhere after the world found its contacts
 
-  std::array<Snapshot, 2> snapshots;
-  int newest = 1;            // the shown snapshot, which belongs to the vertices that the orchestrator shows
-  bool handed_over = false;  // the other snapshot is the next one to be shown
   Eigen::Matrix3f tilt = Eigen::Matrix3f::Identity();
-  std::vector<InputEvent<3>> events;      // of the last step
-  std::int64_t script_frame = 0;          // a reset does not restart it
-  double frame = 0;                       // frames of 1/60 s that were simulated since the last reset
-  std::chrono::nanoseconds skin_time{0};  // of the PPU, to hand over the last frame
+  std::vector<InputEvent<3>> events;  // of the last step
+  std::int64_t script_frame = 0;      // a reset does not restart it
+  double frame = 0;                   // frames of 1/60 s that were simulated since the last reset
 };
 
 Simulation3d::Simulation3d(const Scene& scene, const SimulationOptions& options)
@@ -614,12 +505,12 @@ FrameTimes Simulation3d::step(std::span<const InputEvent<3>> events) {
   const int substeps = s.controls.due_substeps(s.substeps_of_frame());
   if (substeps == 0) {
     finish();
-    if (s.follow_bodies() || puts_elsewhere(s.events)) {
+    if (s.snapshots.follow(s.soft_bodies) || puts_elsewhere(s.events)) {
       s.contacts_stand = false;
       s.hand_over();
       finish();
     }
-    s.copy_contacts(s.snapshots[static_cast<std::size_t>(s.newest)]);  // the world is as it is shown
+    s.copy_contacts(s.snapshots.shown());  // the world is as it is shown
     return times;
   }
   s.tilt = s.present_tilt();
@@ -636,7 +527,7 @@ FrameTimes Simulation3d::step(std::span<const InputEvent<3>> events) {
   times.skin_wait_ms = milliseconds_since(waiting);
 
   // New pieces have no previous frame to show, so this frame is shown at once.
-  const bool is_broken = s.follow_bodies();
+  const bool is_broken = s.snapshots.follow(s.soft_bodies);
   s.hand_over();
   if (is_broken) finish();
   const ppu::SoftBodyTimes end = s.soft_bodies.times();
@@ -645,14 +536,14 @@ FrameTimes Simulation3d::step(std::span<const InputEvent<3>> events) {
   times.solve_ms = milliseconds(end.solve - begin.solve);
   times.apply_ms = milliseconds(end.apply - begin.apply);
   times.contacts_ms = milliseconds(end.contacts - begin.contacts);
-  times.skin_ms = milliseconds(s.skin_time);
+  times.skin_ms = milliseconds(s.snapshots.skin_time());
   times.ppu_ms = times.gather_ms + times.solve_ms + times.apply_ms + times.contacts_ms + times.skin_ms;
   times.solver_wait_ms = milliseconds(end.wait - begin.wait);
   times.ps3_ms = on_ps3.milliseconds();
   return times;
 }
 
-void Simulation3d::finish() { state_->take_over(); }
+void Simulation3d::finish() { state_->snapshots.take_over(); }
 
 void Simulation3d::stop() {
   finish();
@@ -669,13 +560,13 @@ std::size_t Simulation3d::bodies_on_ppu() const {
 
 std::size_t Simulation3d::particles() const {
   std::size_t sum = 0;
-  for (const auto& body : state_->positions) sum += body.size();
+  for (const auto& body : state_->snapshots.positions()) sum += body.size();
   return sum;
 }
 
-std::size_t Simulation3d::vertices() const { return state_->vertices; }
+std::size_t Simulation3d::vertices() const { return state_->snapshots.vertices(); }
 
-Skin Simulation3d::skin() const { return state_->orchestrator ? Skin::kSpe : Skin::kGpu; }
+Skin Simulation3d::skin() const { return state_->snapshots.skins_on_spes() ? Skin::kSpe : Skin::kGpu; }
 
 std::size_t Simulation3d::rigid_bodies() const {
   std::size_t count = 0;
@@ -688,7 +579,7 @@ const ppu::SoftBodyModel<3>& Simulation3d::model(std::size_t body) const {
   SC_ASSERT(body < soft_bodies(), "body {} of {}", body, soft_bodies());
   return state_->soft_bodies[body].model();
 }
-std::size_t Simulation3d::source(std::size_t body) const { return state_->sources.at(body); }
+std::size_t Simulation3d::source(std::size_t body) const { return state_->scene_bodies.sources().at(body); }
 const ppu::SoftBody<3>& Simulation3d::soft_body(std::size_t body) const { return state_->soft_bodies[body]; }
 
 Beginning<3> Simulation3d::moment() const { return state_->moment(); }
@@ -699,32 +590,32 @@ std::uint64_t Simulation3d::state_hash() const {
   return hash;
 }
 
-std::size_t Simulation3d::shown_bodies() const { return state_->shown().particles.size(); }
+std::size_t Simulation3d::shown_bodies() const { return state_->snapshots.shown().particles.size(); }
 
-ppu::SkinnedBody Simulation3d::shown(std::size_t body) const {
-  SC_ASSERT(body < shown_bodies(), "body {} of {}", body, shown_bodies());
-  if (state_->orchestrator) return state_->orchestrator->shown(body);
-  return {.vertices = {}, .origin = state_->shown().origins[body]};
-}
+ppu::SkinnedBody Simulation3d::shown(std::size_t body) const { return state_->snapshots.skinned(body); }
 
 std::span<const Eigen::Vector4f> Simulation3d::shown_particles(std::size_t body) const {
   SC_ASSERT(body < shown_bodies(), "body {} of {}", body, shown_bodies());
-  return state_->shown().particles[body];
+  return state_->snapshots.shown().particles[body];
 }
 
-std::span<const Eigen::Matrix4f> Simulation3d::shown_box_poses() const { return state_->shown().box_poses; }
+std::span<const Eigen::Matrix4f> Simulation3d::shown_box_poses() const {
+  return state_->snapshots.shown().box_poses;
+}
 
-std::span<const ppu::Contact> Simulation3d::shown_contacts() const { return state_->shown().contacts; }
+std::span<const ppu::Contact> Simulation3d::shown_contacts() const {
+  return state_->snapshots.shown().contacts;
+}
 
 void Simulation3d::record_contacts(bool on) { state_->records_contacts = on; }
 
-const Eigen::Matrix3f& Simulation3d::shown_tilt() const { return state_->shown().tilt; }
+const Eigen::Matrix3f& Simulation3d::shown_tilt() const { return state_->snapshots.shown().tilt; }
 
 void Simulation3d::show(Shown3d& to) const {
   to.bodies.resize(shown_bodies());
   for (std::size_t b = 0; b < shown_bodies(); ++b) {
-    to.bodies[b].model = state_->shown().models[b];
-    to.bodies[b].source = state_->shown().sources[b];
+    to.bodies[b].model = state_->snapshots.shown().models[b];
+    to.bodies[b].source = state_->snapshots.shown().sources[b];
     const ppu::SkinnedBody skinned = shown(b);
     const auto particles = shown_particles(b);
     to.bodies[b].vertices.assign(skinned.vertices.begin(), skinned.vertices.end());
@@ -733,8 +624,8 @@ void Simulation3d::show(Shown3d& to) const {
   }
   to.box_poses.assign(shown_box_poses().begin(), shown_box_poses().end());
   to.contacts.assign(shown_contacts().begin(), shown_contacts().end());
-  to.hands = state_->shown().hands;
-  to.ropes = state_->shown().ropes;
+  to.hands = state_->snapshots.shown().hands;
+  to.ropes = state_->snapshots.shown().ropes;
   to.tilt = shown_tilt();
 }
 
@@ -744,9 +635,9 @@ std::optional<InputEvent<3>> Simulation3d::touch(const Ray& ray) const {
   std::optional<InputEvent<3>> touched;
   float share = 1;
   if (const auto soft = state_->soft_bodies.cast_ray(ray.from, end)) {
-    std::uint32_t body = 0;
-    while (&state_->soft_bodies[body] != soft->body) ++body;
-    touched = {.action = Action::kHold, .body = body, .value = soft->hit.position};
+    const std::size_t body = number_in(state_->soft_bodies, *soft->body);
+    touched = {
+        .action = Action::kHold, .body = static_cast<std::uint32_t>(body), .value = soft->hit.position};
     share = soft->hit.share;
   }
   for (const ppu::BulletWorld::RayHit& hit : state_->world.cast_ray(ray.from, end)) {

@@ -3,7 +3,6 @@
 // skin them.
 
 #include <Eigen/Core>
-#include <chrono>
 #include <cstdint>
 #include <memory>
 #include <optional>

@@ -19,13 +19,13 @@ render::Colour linear_of(const Eigen::Vector3f& encoded) {
 render::Wrap wrap_of(ppu::TextureWrap wrap) {
   switch (wrap) {
     case ppu::TextureWrap::kRepeat:
-      return render::Wrap::repeat;
+      return render::Wrap::kRepeat;
     case ppu::TextureWrap::kMirror:
-      return render::Wrap::mirror;
+      return render::Wrap::kMirror;
     case ppu::TextureWrap::kClamp:
-      return render::Wrap::clamp;
+      return render::Wrap::kClamp;
   }
-  return render::Wrap::repeat;
+  return render::Wrap::kRepeat;
 }
 
 template <class To>
@@ -93,8 +93,8 @@ render::Material MeshLooks::material(const ppu::MeshMaterial& look, bool has_col
 
 std::vector<render::PartDraw> MeshLooks::parts(const ppu::TriangleMesh& mesh,
                                                const render::Colour& otherwise) {
-  static_assert(static_cast<int>(ppu::MeshAlpha::kMask) == static_cast<int>(render::AlphaMode::mask) &&
-                static_cast<int>(ppu::MeshAlpha::kBlend) == static_cast<int>(render::AlphaMode::blend));
+  static_assert(static_cast<int>(ppu::MeshAlpha::kMask) == static_cast<int>(render::AlphaMode::kMask) &&
+                static_cast<int>(ppu::MeshAlpha::kBlend) == static_cast<int>(render::AlphaMode::kBlend));
   const bool has_colours = !mesh.colours.empty(), has_coordinates = !mesh.texture_coordinates.empty();
   const auto made = [&](const ppu::MeshMaterial& look) {
     return material(look, has_colours, has_coordinates, otherwise);

@@ -120,7 +120,7 @@ void SceneView2d::draw_rigid_body(std::size_t index, const Pose2d& pose) {
   drawing_.shapes.push_back({.shape = body.id,
                              .vertices = body.vertices,
                              .colour = colour,
-                             .fill = body.firm ? render::Fill2d::hatched : render::Fill2d::plain});
+                             .fill = body.firm ? render::Fill2d::kHatched : render::Fill2d::kPlain});
   // Walls overlap: the fixed bodies have one common outline around all of them.
   auto& lines = body.firm ? drawing_.lines_below : drawing_.lines;
   lines.push_back({.points = body.outline,

@@ -2,7 +2,6 @@
 // Draws a soft body in two dimensions: its skin in the colours of its cells or with its picture, outlines, and its face.
 
 #include <Eigen/Geometry>
-#include <array>
 #include <cstdint>
 #include <map>
 #include <memory>

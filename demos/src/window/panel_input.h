@@ -5,7 +5,6 @@
 
 #include <cstddef>
 #include <deque>
-#include <vector>
 
 #include "demo/panel.h"
 

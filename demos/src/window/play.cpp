@@ -10,7 +10,6 @@
 #include <memory>
 #include <optional>
 #include <stdexcept>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -225,6 +224,122 @@ class PlayedScene {
   FrameClock::Clock::time_point begin_ = FrameClock::Clock::now();
 };
 
+/// What the user has chosen to see after a scene.
+struct Next {
+  std::unique_ptr<Demo> demo;         ///< none of the list of scenes; null: none
+  std::optional<std::size_t> number;  ///< in the list of scenes: goes before `demo`
+  bool same_scene = false;            ///< `demo` is of the scene that was played
+  explicit operator bool() const { return demo || number; }
+};
+
+std::vector<SceneTitle> titles_of(const std::vector<NamedDemo>& scenes) {
+  std::vector<SceneTitle> titles;
+  for (const NamedDemo& scene : scenes) titles.push_back({scene.name, scene.title});
+  if (titles.size() == 1) titles.clear();
+  return titles;
+}
+
+/// Plays scenes in a window, one after the other.
+class Player {
+ public:
+  /// All of these must outlive it.
+  Player(const WindowOptions& options, const std::vector<NamedDemo>& scenes, const SimulationOptions& how,
+         const std::function<bool()>& interrupted)
+      : options_(options),
+        scenes_(scenes),
+        how_(how),
+        interrupted_(interrupted),
+        stage_(std::make_unique<Stage>(options, titles_of(scenes))) {}
+
+  /// @return the run of the scene with which the program ends
+  Run play() {
+    std::optional<Look> look;
+    std::unique_ptr<Demo> other;  // the next demo, if it is none of `scenes_`
+    bool begins_paused = false;
+    for (std::size_t number = 0;;) {
+      Run run{.demo = other ? std::exchange(other, nullptr) : scenes_[number].make(how_), .record = {}};
+      run.record.interrupted = interrupted_();
+      if (run.record.interrupted) return run;
+      if (look) run.demo->input().set_look(*look);
+      if (std::exchange(begins_paused, false)) run.demo->input().do_now(Command::kPause);
+      Next next = play_scene(run, number);
+      run.record.interrupted = interrupted_();
+      if (!next) return run;
+      look = run.demo->input().look();
+      look->stroke.reset();  // the next scene's knife did not begin it
+      look->hands = {};
+      if (next.demo && next.same_scene) {
+        begins_paused = run.demo->paused();
+      } else {
+        look = look->with_scenes_camera();
+      }
+      if (next.number)
+        number = *next.number;
+      else
+        other = std::move(next.demo);
+    }
+  }
+
+ private:
+  /// Plays a run and completes its record. @param number  of its scene, or of the last one that was in the list
+  Next play_scene(Run& run, std::size_t number) {
+    auto played = std::make_unique<PlayedScene>(stage_->window, *run.demo, options_.frames, stage_->overlays);
+    Next next;
+    try {
+      run_recorded(*run.demo, [&] {
+        play_frames(*played, *run.demo, number, next);
+        run.record = played->finish();
+      });
+    } catch (...) {
+      if (!stage_->window.lost()) throw;
+      // A call for the display may never return, and what it uses stays until the program ends, which is now.
+      static_cast<void>(played.release());
+      static_cast<void>(stage_.release());
+      run.demo.release()->stop();
+      throw;
+    }
+    return next;
+  }
+
+  /// Plays until the scene ends, or the user has chosen what is next.
+  void play_frames(PlayedScene& scene, Demo& demo, std::size_t number, Next& next) {
+    Panel& panel = stage_->overlays.panel;
+    while (!next && !scene.ends() && !interrupted_()) {
+      clock_.wait();
+      if (stage_->window.lost())
+        throw std::runtime_error("the display of the window has gone; the demo ends here");
+      handle_events(scene, next);
+      scene.step();
+      if (demo.input().wants_next_scene() && scenes_.size() > 1) next.number = (number + 1) % scenes_.size();
+      if (const auto choice = panel.take_choice()) next.number = *choice;
+      if (const auto file = panel.take_file(); file && !next)
+        next = {.demo = scene.with_file(*file, how_), .number = {}, .same_scene = false};
+      if (!next) next = {.demo = scene.with_change(how_), .number = {}, .same_scene = true};
+    }
+  }
+
+  void handle_events(PlayedScene& scene, Next& next) {
+    SDL_Event event;
+    while (!next.demo && SDL_PollEvent(&event) != 0) {
+      controllers_.handle(event);
+      if (const auto file = dropped_file(event)) {
+        next.same_scene = !is_scene_file(*file);
+        next.demo = scene.with_file(*file, how_);
+      } else {
+        scene.handle(event);
+      }
+    }
+  }
+
+  const WindowOptions& options_;
+  const std::vector<NamedDemo>& scenes_;
+  const SimulationOptions& how_;
+  const std::function<bool()>& interrupted_;
+  std::unique_ptr<Stage> stage_;
+  Controllers controllers_;
+  FrameClock clock_;
+};
+
 }  // namespace
 
 Run play(const WindowOptions& options, const std::vector<NamedDemo>& scenes, const SimulationOptions& how,
@@ -235,83 +350,7 @@ Run play(const WindowOptions& options, const std::vector<NamedDemo>& scenes, con
   SC_ASSERT(options.width > 0 && options.height > 0, "a window of {} by {} pixels", options.width,
             options.height);
   SC_ASSERT(options.ui_scale.value_or(1) > 0, "menus scaled by {}", options.ui_scale.value_or(1));
-  std::vector<SceneTitle> titles;
-  for (const NamedDemo& scene : scenes) titles.push_back({scene.name, scene.title});
-  if (titles.size() == 1) titles.clear();
-  auto stage = std::make_unique<Stage>(options, std::move(titles));
-  render::Window& window = stage->window;
-  Overlays& overlays = stage->overlays;
-  Controllers controllers;
-  FrameClock clock;
-  std::optional<Look> look;
-  std::unique_ptr<Demo> other;  // the next demo, if it is none of `scenes`
-  bool begins_paused = false;
-  for (std::size_t number = 0;;) {
-    Run run{.demo = other ? std::exchange(other, nullptr) : scenes[number].make(how), .record = {}};
-    run.record.interrupted = interrupted();
-    if (run.record.interrupted) return run;
-    if (look) run.demo->input().set_look(*look);
-    if (std::exchange(begins_paused, false)) run.demo->input().do_now(Command::kPause);
-    auto played = std::make_unique<PlayedScene>(window, *run.demo, options.frames, overlays);
-    PlayedScene& scene = *played;
-    bool next = false, same_scene = false;
-    std::size_t chosen = (number + 1) % scenes.size();
-    const auto play_it = [&] {
-      while (!next && !other && !scene.ends() && !interrupted()) {
-        clock.wait();
-        if (window.lost()) throw std::runtime_error("the display of the window has gone; the demo ends here");
-        SDL_Event event;
-        while (!other && SDL_PollEvent(&event) != 0) {
-          controllers.handle(event);
-          if (const auto file = dropped_file(event)) {
-            same_scene = !is_scene_file(*file);
-            other = scene.with_file(*file, how);
-          } else {
-            scene.handle(event);
-          }
-        }
-        scene.step();
-        next = run.demo->input().wants_next_scene() && scenes.size() > 1;
-        if (const auto choice = overlays.panel.take_choice()) {
-          next = true;
-          chosen = *choice;
-        }
-        if (const auto file = overlays.panel.take_file(); file && !next && !other) {
-          other = scene.with_file(*file, how);
-          same_scene = false;
-        }
-        if (!next && !other) {
-          other = scene.with_change(how);
-          same_scene = true;
-        }
-      }
-      run.record = scene.finish();
-    };
-    try {
-      run_recorded(*run.demo, play_it);
-    } catch (...) {
-      if (!window.lost()) throw;
-      // A call for the display may never return, and what it uses stays until the program ends, which is now.
-      static_cast<void>(played.release());
-      static_cast<void>(stage.release());
-      run.demo.release()->stop();
-      throw;
-    }
-    run.record.interrupted = interrupted();
-    if (!next && !other) return run;
-    look = run.demo->input().look();
-    look->stroke.reset();  // the next scene's knife did not begin it
-    look->hands = {};
-    if (other && same_scene) {
-      begins_paused = run.demo->paused();
-    } else {
-      look = look->with_scenes_camera();
-    }
-    if (next) {
-      number = chosen;
-      other.reset();
-    }
-  }
+  return Player(options, scenes, how, interrupted).play();
 }
 
 }  // namespace softcell::demos

@@ -9,8 +9,8 @@
 
 namespace softcell::ls_sim {
 
-/// Sleeps until the condition is notified, or until the time has come. With the lock, which is held again afterwards, also in a thread that is
-/// cancelled: its stack is unwound from here.
+/// Sleeps until the condition is notified, or until the time has come. With the lock, which is held again afterwards, also in a thread that
+/// is cancelled: its stack is unwound from here.
 void wait_once(std::condition_variable& condition, std::unique_lock<std::mutex>& lock,
                std::optional<std::chrono::steady_clock::time_point> until);
 

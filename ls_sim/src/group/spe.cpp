@@ -1,6 +1,7 @@
 #include "spe.h"
 
 #include <algorithm>
+#include <chrono>
 #include <exception>
 
 #include "engine_by_image.h"

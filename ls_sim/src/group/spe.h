@@ -1,7 +1,6 @@
 #pragma once
 // One SPE: local store, MFC, channels, engine.
 
-#include <chrono>
 #include <map>
 #include <memory>
 #include <optional>

@@ -8,7 +8,6 @@
 #include <filesystem>
 #include <string_view>
 #include <unordered_map>
-#include <utility>
 #include <vector>
 
 namespace softcell::ls_sim {

@@ -2,7 +2,6 @@
 // What a program does, told to a Debugger.
 
 #include <atomic>
-#include <cstring>
 #include <span>
 
 #include "core.h"

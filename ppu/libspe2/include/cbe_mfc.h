@@ -1,7 +1,7 @@
 #ifndef SOFTCELL_CBE_MFC_H
 #define SOFTCELL_CBE_MFC_H
-/* Names of the MFC's commands, sizes and answers, for MFC_ClassID_CMD and other registers of the problem state. On the SPU side <spu_mfcio.h>
- * has them. [SDK for Multicore Acceleration, cbe_mfc.h; CBEA, MFC commands] documented */
+/* Names of the MFC's commands, sizes and answers, for MFC_ClassID_CMD and other registers of the problem state. On the SPU side
+ * <spu_mfcio.h> has them. [SDK for Multicore Acceleration, cbe_mfc.h; CBEA, MFC commands] documented */
 
 /* Sizes, in bytes; a list element takes 8. */
 #define MFC_MIN_DMA_SIZE_SHIFT 4

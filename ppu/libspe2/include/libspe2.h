@@ -78,9 +78,9 @@ spe_event_handler_ptr_t spe_event_handler_create(void);
 /* EAGAIN: a thread waits for its events. */
 int spe_event_handler_destroy(spe_event_handler_ptr_t evhandler);
 
-/* Events that are registered already get the new data. Events are waited for as long as their condition holds: until the mailbox was read or filled, the tag status or the
- * stop information was read. EINVAL: a null pointer, or no such context in it. ENOTSUP: unknown events, or a context
- * made without SPE_EVENTS_ENABLE. */
+/* Events that are registered already get the new data. Events are waited for as long as their condition holds: until the mailbox was read
+ * or filled, the tag status or the stop information was read. EINVAL: a null pointer, or no such context in it. ENOTSUP: unknown events, or
+ * a context made without SPE_EVENTS_ENABLE. */
 int spe_event_handler_register(spe_event_handler_ptr_t evhandler, spe_event_unit_t* event);
 int spe_event_handler_deregister(spe_event_handler_ptr_t evhandler, spe_event_unit_t* event);
 
@@ -145,7 +145,8 @@ void* spe_ps_area_get(spe_context_ptr_t spe, enum ps_area area);
  * address of the arguments. Any other result than 0 ends spe_context_run(). */
 
 /* callnum: 4 to 255. EINVAL: one above, a null handler, an unknown mode. EACCES: SPE_CALLBACK_NEW, and there is one, or the
- * number is one of the first four, which are the libraries' and softcell's own: they cannot be updated either. ESRCH: SPE_CALLBACK_UPDATE, and there is none. */
+ * number is one of the first four, which are the libraries' and softcell's own: they cannot be updated either. ESRCH: SPE_CALLBACK_UPDATE,
+ * and there is none. */
 int spe_callback_handler_register(void* handler, unsigned int callnum, unsigned int mode);
 
 /* EINVAL: callnum is out of range. EACCES: it is one of the libraries'. ESRCH: there is none; spe_callback_handler_query() says so of

@@ -1,5 +1,6 @@
 /* Words in main storage that the PPU side shares with SPEs: counters, locks, conditions and completions, as inline functions: there is no
- * -lsync. They are those of the SPU side's libsync.h, which says what each does. [SDK for Multicore Acceleration, sync library] documented */
+ * -lsync. They are those of the SPU side's libsync.h, which says what each does.
+ * [SDK for Multicore Acceleration, sync library] documented */
 #ifndef SOFTCELL_LIBSYNC_H
 #define SOFTCELL_LIBSYNC_H
 

@@ -1,10 +1,8 @@
 #pragma once
 // Work for the kernel attach, for measuring its stack and its time.
 
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <vector>
 
 #include "attach_job.h"
 #include "body_samples.h"

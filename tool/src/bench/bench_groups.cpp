@@ -1,6 +1,5 @@
 #include "bench_groups.h"
 
-#include <algorithm>
 #include <array>
 #include <tuple>
 

@@ -91,9 +91,10 @@ void add_interpreter_benchmarks(std::vector<Benchmark>& all);
 /// matching and no skinning.
 void add_frame_benchmarks(std::vector<Benchmark>& all);
 
-/// contact/<fall|rest|pile|self|mesh|coarse_mesh>/<ours|spheres|btsoftbody>: frames in which bodies touch, in processor time of all threads; an item
-/// is a particle in one frame. `ours`: contacts of what is drawn; `spheres`: a rigid sphere at each outer particle; `btsoftbody`: Bullet's own
-/// soft bodies with a node for each particle, whose clusters touch. `mesh`: 1,000 static triangles near a body; `coarse_mesh`: ten.
+/// contact/<fall|rest|pile|self|mesh|coarse_mesh>/<ours|spheres|btsoftbody>: frames in which bodies touch, in processor time of all
+/// threads; an item is a particle in one frame. `ours`: contacts of what is drawn; `spheres`: a rigid sphere at each outer particle;
+/// `btsoftbody`: Bullet's own soft bodies with a node for each particle, whose clusters touch. `mesh`: 1,000 static triangles near a body;
+/// `coarse_mesh`: ten.
 void add_contact_benchmarks(std::vector<Benchmark>& all);
 
 /// frame/<scene> and .../ppu, as above; .../circles: like spheres, with circles in Box2D.

@@ -9,64 +9,85 @@
 #include "contact_find_job.h"
 #include "ppu/spe_bodies/contact_records.h"
 #include "ppu/spe_bodies/find_model.h"
+#include "softcell/dma/buffer.h"
 #include "softcell/soft_bodies/shapes.h"
 #include "softcell/soft_bodies/soft_body_settings.h"
 
 namespace softcell::tool {
 
-/// Two overlapping balls: finds their contacts, or solves one and stiffens a cell.
-inline void run_contacts(SampleRun& sample, bool solves) {
-  ppu::SoftBodySettings settings;
-  settings.cell_size = 0.2f;
-  const ppu::ContactModel contact(ppu::make_soft_body_model(ppu::make_sphere(0.5f, 12), settings));
-  const ppu::Lattice<3>& lattice = contact.lattice();
-  const auto particles = static_cast<std::uint32_t>(lattice.particles.size());
-  auto contacts = ppu::contact_buffer<spu::SolveContact>(sample.memory(), "contacts", spu::kFindMaxContacts);
-  if (solves) {
-    auto changes =
-        ppu::contact_buffer<spu::SolveVelocity>(sample.memory(), "changes", spu::solve_slots(particles));
-    auto positions = ppu::contact_buffer<spu::SolveVelocity>(sample.memory(), "positions", particles);
-    auto cells = ppu::contact_buffer<spu::SolveCell>(sample.memory(), "cells", 1);
-    for (std::uint32_t i = 0; i < particles; ++i)
-      positions[i] = {lattice.rest_position(i).x(), lattice.rest_position(i).y(),
-                      lattice.rest_position(i).z(), 1};
-    for (int k = 0; k < 8; ++k) {
-      const auto corner = static_cast<std::uint16_t>(lattice.corners[0][static_cast<std::size_t>(k)]);
-      contacts[0].a.particle[k] = contacts[0].b.particle[k] = cells[0].particle[k] = corner;
-      contacts[0].a.weight[k] = 0.125f, contacts[0].b.weight[k] = 0;
-    }
-    contacts[0].normal[1] = contacts[0].least_velocity = contacts[0].mass = contacts[0].push_velocity = 1;
-    auto task = ppu::contact_buffer<spu::SolveTask>(sample.memory(), "task", 1);
-    task[0].a_ea = task[0].b_ea = changes.ea().value;
-    task[0].contacts_ea = contacts.ea().value;
-    task[0].cells_ea = cells.ea().value;
-    task[0].positions_ea = task[0].start_ea = positions.ea().value;
-    task[0].a_count = task[0].b_count = particles;
-    task[0].contact_count = task[0].cell_count = task[0].pushes = 1;
-    task[0].iterations = 4;
-    task[0].stiffening = 0.5f;
-    task[0].inverse_spacing = 1;
-    auto job = ppu::contact_buffer<spu::SolveJob>(sample.memory(), "job", 1);
-    job[0].tasks_ea = task.ea().value;
-    job[0].task_count = 1;
-    // First with a rigid body, then, as the timed work, with another soft body.
-    const spu::SolveTask between_bodies = task[0];
-    const spu::SolveContact contact_of_bodies = contacts[0];
-    auto rigids = ppu::contact_buffer<spu::SolveRigid>(sample.memory(), "rigid body", 1);
-    rigids[0].inverse_mass = 1;
-    contacts[0].rigid = {};
-    contacts[0].rigid.feels[1] = 2;
-    contacts[0].rigid.push_mass = contacts[0].rigid.friction_mass = 1;
-    task[0].b_ea = 0;
-    task[0].rigids_ea = rigids.ea().value;
-    task[0].rigid_count = 1;
-    sample.run(job.ea());
-    task[0] = between_bodies;
-    contacts[0] = contact_of_bodies;
-    sample.begin_timing();
-    return sample.run(job.ea());
+/// The ball that both kernels get, and room for its contacts.
+struct ContactSample {
+  explicit ContactSample(SampleRun& sample)
+      : contacts(ppu::contact_buffer<spu::SolveContact>(sample.memory(), "contacts", spu::kFindMaxContacts)) {
   }
-  const ppu::FindModel model(contact);
+  static ppu::SoftBodySettings ball_settings() {
+    ppu::SoftBodySettings settings;
+    settings.cell_size = 0.2f;
+    return settings;
+  }
+  const ppu::Lattice<3>& lattice() const { return ball.lattice(); }
+  std::uint32_t particles() const { return static_cast<std::uint32_t>(lattice().particles.size()); }
+
+  ppu::ContactModel ball{ppu::make_soft_body_model(ppu::make_sphere(0.5f, 12), ball_settings())};
+  dma::Buffer<spu::SolveContact> contacts;
+};
+
+/// Solves a contact of two balls, and stiffens a cell.
+inline void run_contact_solve(SampleRun& sample) {
+  ContactSample balls(sample);
+  auto& contacts = balls.contacts;
+  const ppu::Lattice<3>& lattice = balls.lattice();
+  const std::uint32_t particles = balls.particles();
+  auto changes =
+      ppu::contact_buffer<spu::SolveVelocity>(sample.memory(), "changes", spu::solve_slots(particles));
+  auto positions = ppu::contact_buffer<spu::SolveVelocity>(sample.memory(), "positions", particles);
+  auto cells = ppu::contact_buffer<spu::SolveCell>(sample.memory(), "cells", 1);
+  for (std::uint32_t i = 0; i < particles; ++i)
+    positions[i] = {lattice.rest_position(i).x(), lattice.rest_position(i).y(), lattice.rest_position(i).z(),
+                    1};
+  for (int k = 0; k < 8; ++k) {
+    const auto corner = static_cast<std::uint16_t>(lattice.corners[0][static_cast<std::size_t>(k)]);
+    contacts[0].a.particle[k] = contacts[0].b.particle[k] = cells[0].particle[k] = corner;
+    contacts[0].a.weight[k] = 0.125f, contacts[0].b.weight[k] = 0;
+  }
+  contacts[0].normal[1] = contacts[0].least_velocity = contacts[0].mass = contacts[0].push_velocity = 1;
+  auto task = ppu::contact_buffer<spu::SolveTask>(sample.memory(), "task", 1);
+  task[0].a_ea = task[0].b_ea = changes.ea().value;
+  task[0].contacts_ea = contacts.ea().value;
+  task[0].cells_ea = cells.ea().value;
+  task[0].positions_ea = task[0].start_ea = positions.ea().value;
+  task[0].a_count = task[0].b_count = particles;
+  task[0].contact_count = task[0].cell_count = task[0].pushes = 1;
+  task[0].iterations = 4;
+  task[0].stiffening = 0.5f;
+  task[0].inverse_spacing = 1;
+  auto job = ppu::contact_buffer<spu::SolveJob>(sample.memory(), "job", 1);
+  job[0].tasks_ea = task.ea().value;
+  job[0].task_count = 1;
+  // First with a rigid body, then, as the timed work, with another soft body.
+  const spu::SolveTask between_bodies = task[0];
+  const spu::SolveContact contact_of_bodies = contacts[0];
+  auto rigids = ppu::contact_buffer<spu::SolveRigid>(sample.memory(), "rigid body", 1);
+  rigids[0].inverse_mass = 1;
+  contacts[0].rigid = {};
+  contacts[0].rigid.feels[1] = 2;
+  contacts[0].rigid.push_mass = contacts[0].rigid.friction_mass = 1;
+  task[0].b_ea = 0;
+  task[0].rigids_ea = rigids.ea().value;
+  task[0].rigid_count = 1;
+  sample.run(job.ea());
+  task[0] = between_bodies;
+  contacts[0] = contact_of_bodies;
+  sample.begin_timing();
+  sample.run(job.ea());
+}
+
+/// Finds the contacts of two overlapping balls.
+inline void run_contact_find(SampleRun& sample) {
+  ContactSample balls(sample);
+  const ppu::Lattice<3>& lattice = balls.lattice();
+  const std::uint32_t particles = balls.particles();
+  const ppu::FindModel model(balls.ball);
   auto cells = ppu::contact_buffer<spu::FindCell>(sample.memory(), "cells", model.cells.size());
   auto groups = ppu::contact_buffer<spu::FindGroup>(sample.memory(), "groups", model.groups.size());
   std::copy(model.cells.begin(), model.cells.end(), cells.span().begin());
@@ -107,13 +128,10 @@ inline void run_contacts(SampleRun& sample, bool solves) {
   auto job = ppu::contact_buffer<spu::FindJob>(sample.memory(), "job", 1);
   job[0].tasks_ea = task.ea().value;
   job[0].results_ea = result.ea().value;
-  job[0].contacts_ea = contacts.ea().value;
+  job[0].contacts_ea = balls.contacts.ea().value;
   job[0].task_count = 1;
   job[0].contacts_room = spu::kFindMaxContacts;
   sample.run(job.ea());
 }
-
-inline void run_contact_find(SampleRun& sample) { run_contacts(sample, false); }
-inline void run_contact_solve(SampleRun& sample) { run_contacts(sample, true); }
 
 }  // namespace softcell::tool

@@ -1,7 +1,6 @@
 #pragma once
 // Applies a change that a user makes to a scene in a window, in either dimension.
 
-#include <algorithm>
 #include <filesystem>
 #include <stdexcept>
 #include <vector>

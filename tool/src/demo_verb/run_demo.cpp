@@ -108,6 +108,20 @@ demos::Run run_headless(const DemoOptions& options, std::string_view verb, const
   return run;
 }
 
+/// Refuses what has no meaning with a window, or without one.
+void check_window_options(const DemoOptions& options) {
+  if (!options.headless && (options.out || options.video)) {
+    throw UsageError("--out and --video write pictures without a window: give --headless too");
+  }
+  if (!options.headless && options.statistics)
+    throw UsageError(
+        "--statistics is for pictures without a window: give --headless too; in a window S shows them");
+  if (options.ui_scale && !(*options.ui_scale >= 0.5f && *options.ui_scale <= 4))
+    throw UsageError(fmt::format("--ui-scale {}: give a number from 0.5 to 4", *options.ui_scale));
+  if (options.ui_scale && options.headless)
+    throw UsageError("--ui-scale is for text and menus in a window: leave out --headless");
+}
+
 /// Checks what can be checked of a film and its pictures before they are made.
 void check_pictures(const DemoOptions& options) {
   if (options.supersample > 1) {
@@ -165,6 +179,21 @@ void check_saved_scene(const DemoOptions& options) {
   const base::WholeFile scene(*options.save_scene), state(*state_of(options.save_scene));
 }
 
+/// @param findings, trace, timing  null: there are none
+demos::SimulationOptions simulation_options(const DemoOptions& options, ls_sim::Findings* findings,
+                                            ls_sim::Trace* trace, ls_sim::Timing* timing) {
+  SC_ASSERT(options.spes >= 1 && options.spes <= dma::kSpeCount, "{} SPEs of {}", options.spes,
+            dma::kSpeCount);
+  return {.solver = options.solver,
+          .machine = options.machine,
+          .contacts = options.contacts,
+          .spes = options.spes,
+          .schedule = options.schedule,
+          .findings = findings,
+          .trace = trace,
+          .timing = timing};
+}
+
 }  // namespace
 
 std::vector<NamedFile> written_files(const DemoOptions& options) {
@@ -195,16 +224,7 @@ std::string scene_to_load(const DemoOptions& options, int dimension,
 }
 
 int run_demo(const DemoOptions& options, std::string_view verb, const LoadScenes& load) {
-  if (!options.headless && (options.out || options.video)) {
-    throw UsageError("--out and --video write pictures without a window: give --headless too");
-  }
-  if (!options.headless && options.statistics)
-    throw UsageError(
-        "--statistics is for pictures without a window: give --headless too; in a window S shows them");
-  if (options.ui_scale && !(*options.ui_scale >= 0.5f && *options.ui_scale <= 4))
-    throw UsageError(fmt::format("--ui-scale {}: give a number from 0.5 to 4", *options.ui_scale));
-  if (options.ui_scale && options.headless)
-    throw UsageError("--ui-scale is for text and menus in a window: leave out --headless");
+  check_window_options(options);
   check_pictures(options);
   check_files(options);
   const InterruptGuard guard;  // before the first file is opened, so that no part of one is left
@@ -226,16 +246,8 @@ int run_demo(const DemoOptions& options, std::string_view verb, const LoadScenes
   if (options.trace)
     trace.emplace(options.spes, ls_sim::Trace::kMostEvents,
                   timing ? ls_sim::TraceClock::kSimulated : ls_sim::TraceClock::kHost);
-  SC_ASSERT(options.spes >= 1 && options.spes <= dma::kSpeCount, "{} SPEs of {}", options.spes,
-            dma::kSpeCount);
-  const demos::SimulationOptions how{.solver = options.solver,
-                                     .machine = options.machine,
-                                     .contacts = options.contacts,
-                                     .spes = options.spes,
-                                     .schedule = options.schedule,
-                                     .findings = options.checked ? &findings : nullptr,
-                                     .trace = trace ? &*trace : nullptr,
-                                     .timing = timing ? &*timing : nullptr};
+  const demos::SimulationOptions how = simulation_options(
+      options, options.checked ? &findings : nullptr, trace ? &*trace : nullptr, timing ? &*timing : nullptr);
   const demos::Run run = options.headless ? run_headless(options, verb, scenes.front().make, how, guard)
                                           : demos::play({.title = "softcell " + std::string(verb),
                                                          .width = options.size.width,

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
-#include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 

@@ -9,8 +9,8 @@
 
 namespace softcell::tool {
 
-/// A file is read anew by each run. What comes through a pipe is copied to a file while the first run reads it, for the others. A terminal is
-/// shared by all.
+/// A file is read anew by each run. What comes through a pipe is copied to a file while the first run reads it, for the others. A terminal
+/// is shared by all.
 class KeptInput {
  public:
   /// @param file  where to keep what comes through a pipe.

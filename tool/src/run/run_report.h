@@ -1,7 +1,6 @@
 #pragma once
 // The result of a run of a libspe2 program: how it ended, and what libspe2 reports of it.
 
-#include <cstdint>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>

@@ -6,7 +6,6 @@
 #include <map>
 #include <stdexcept>
 #include <string>
-#include <string_view>
 
 #include "compile.h"
 #include "embed.h"

@@ -2,7 +2,6 @@
 // Parses the command line of an SPU compiler.
 
 #include <cstdint>
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>

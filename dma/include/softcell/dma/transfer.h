@@ -5,7 +5,6 @@
 //   transfer        <--------------------->          a piece each: 4 pieces here, moved in any order
 //   piece            0    1        2       3
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>

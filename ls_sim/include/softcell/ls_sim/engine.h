@@ -2,7 +2,6 @@
 // Engines execute the instructions of a kernel: the native engine those of the host, the interpreter those of the SPU.
 
 #include <array>
-#include <chrono>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -40,7 +39,7 @@ struct EntryArguments {
   EntryState entry_state = EntryState::kLibspe2;  ///< only for SPU programs
   /// The words of three registers, for a native kernel whose main takes vectors; nothing: they begin with the three numbers.
   std::optional<std::array<std::uint32_t, 12>> registers = {};
-  /// Whether static data begin the run as they were linked. SPE contexts leave the local store as it is, which an image is loaded into once.
+  /// Whether static data begin the run as they were linked. SPE contexts leave the local store as it is: an image is loaded once.
   bool data_as_linked = true;
 };
 

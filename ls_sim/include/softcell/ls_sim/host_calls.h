@@ -11,9 +11,9 @@
 namespace softcell::ls_sim {
 
 /// Without it, such a call ends the run with its stop code, 0x2100 or 0x2101. Of the C library the host serves the families of printf and
-/// scanf, fopen, freopen and the functions on streams, remove and rename; of POSIX open, close, read, write, lseek, ftruncate, access, unlink,
-/// stat, lstat, fstat, gettimeofday and nanosleep. All others fail with ENOSYS. A kernel that is built for the host does not need it: it makes the same calls
-/// itself, for anything that the process may do. [libspe2, newlib] second-hand
+/// scanf, fopen, freopen and the functions on streams, remove and rename; of POSIX open, close, read, write, lseek, ftruncate, access,
+/// unlink, stat, lstat, fstat, gettimeofday and nanosleep. All others fail with ENOSYS. A kernel that is built for the host does not need
+/// it: it makes the same calls itself, for anything that the process may do. [libspe2, newlib] second-hand
 struct HostCalls {
   /// Called with the text that a program prints, by the thread that runs its SPE; several SPEs may call at once.
   std::function<void(std::string_view text)> standard_output, standard_error;

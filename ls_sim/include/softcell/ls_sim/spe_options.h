@@ -53,7 +53,7 @@ struct SpeOptions {
   /// Called before each instruction (debugger.h). Programs built for the SPU are not timed then. Null: no debugger. It must outlive the
   /// SPEs.
   Debugger* debugger = nullptr;
-  /// What a trace shows as a failed run: one that ends by a fault, and unless this is false also one with another status than 0 or another stop.
+  /// A trace shows a run as failed if it ends by a fault or, unless this is false, with another status than 0 or another stop.
   bool status_says_failure = true;
   Trace* trace = nullptr;  ///< null: nothing is recorded. It must outlive the SPEs
 };

@@ -69,8 +69,8 @@ struct SoftRayHit2d {
 /// not locked. b2World::ShiftOrigin() does not move soft bodies: call shift_origin() in its place.
 class Box2dSoftBodies {
  public:
-  /// With ContactMethod::kSpheres a particle moves at most this many cells in one step; faster particles are slowed down, which takes momentum from
-  /// their body. This keeps particles from passing through other soft bodies. Box2D's continuous collision keeps them
+  /// With ContactMethod::kSpheres a particle moves at most this many cells in one step; faster particles are slowed down, which takes
+  /// momentum from their body. This keeps particles from passing through other soft bodies. Box2D's continuous collision keeps them
   /// from passing through walls that do not move.
   static constexpr float kMaxTravelInCells = 1.0f;
 
@@ -201,7 +201,7 @@ class Box2dSoftBodies {
     const SoftBody<2>* body = nullptr;  ///< null: no particle
     std::size_t number = 0;             ///< of the particle in its body
   };
-  /// For contact listeners, with ContactMethod::kSpheres: the particle that a b2Body stands for. For any other b2Body the result has no body.
+  /// For contact listeners, with ContactMethod::kSpheres: the particle that a b2Body stands for. For other b2Bodies the result has no body.
   Particle particle_of(const b2Body& body) const;
 
   /// Switches contact events on or off for bodies that touch with their drawn edges. They are off by default and cost nothing then. For

@@ -151,8 +151,8 @@ class BulletSoftBodies {
   /// @return the other pieces that stay (Fracture::least_cells); valid until remove()
   /// @throws std::invalid_argument  the body is not one of these, or touches with spheres; the cut is not finite or has no area.
   std::vector<SoftBody<3>*> cut(const SoftBody<3>& body, const Cut& where);
-  /// The same without a stall: the body stays whole for some substeps, like one that breaks (below), and poll_broken() returns its pieces. If
-  /// the body is already breaking, that is finished first.
+  /// The same without a stall: the body stays whole for some substeps, like one that breaks (below), and poll_broken() returns its pieces.
+  /// If the body is already breaking, that is finished first.
   /// @return whether the cut meets the body   @throws std::invalid_argument  as cut()
   bool begin_cut(const SoftBody<3>& body, const Cut& where);
   /// The bodies that have broken or were cut since the last call, in the order in which that happened, without those that were removed
@@ -171,7 +171,7 @@ class BulletSoftBodies {
   void begin_ahead(float step);
 
   /// Lets bodies at rest sleep, or never (std::nullopt, the default). Bodies that touch with their surfaces fall asleep together with
-  /// the bodies that they press on. With spheres each body falls asleep alone, and bodies that lean on each other may keep each other awake.
+  /// the bodies that they press on. With spheres each body falls asleep alone; bodies that lean on each other may keep each other awake.
   ///
   /// A sleeping body wakes when something that moves touches it or, with surfaces, reaches its box; when gravity changes; when its user
   /// changes it; and when another soft body of this object, on which it may have lain, is changed or removed. With surfaces it also wakes
@@ -189,8 +189,8 @@ class BulletSoftBodies {
   /// @throws std::invalid_argument  the body is not one of these.
   void set_filter(const SoftBody<3>& body, const CollisionFilter& filter);
 
-  /// Switches contact events on or off for bodies that touch with their surfaces. They are off by default and cost nothing then. For spheres
-  /// use Bullet's own callbacks.
+  /// Switches contact events on or off for bodies that touch with their surfaces. They are off by default and cost nothing then. For
+  /// spheres use Bullet's own callbacks.
   void watch_contacts(bool watch);
   /// The contacts that have begun, continued or ended since the last call: one event for each pair of bodies, in the order in which bodies
   /// were added. A pair of bodies that both sleep has no events until one of them wakes.
@@ -201,8 +201,8 @@ class BulletSoftBodies {
   std::vector<ContactEvent> poll_contact_events();
 
   /// The first point at which the line from `from` to `to` (metres) meets the drawn surface of one of these bodies, from inside or outside.
-  /// Each body whose box the line meets costs about half a microsecond for each of its triangles: for many rays keep a SurfaceQuery for each
-  /// body.
+  /// Each body whose box the line meets costs about half a microsecond for each of its triangles: for many rays keep a SurfaceQuery for
+  /// each body.
   /// @param filter  the ray passes through bodies that may not touch something with this filter  @pre from and to are finite
   std::optional<SoftRayHit> cast_ray(const Eigen::Vector3f& from, const Eigen::Vector3f& to,
                                      const CollisionFilter& filter = {}) const;

@@ -27,8 +27,8 @@
 
 namespace softcell::ppu {
 
-/// Where a program cuts bodies: a parallelogram or a plane, in world coordinates. A face between two cells breaks when the cut separates the
-/// middles of the two cells.
+/// Where a program cuts bodies: a parallelogram or a plane, in world coordinates. A face between two cells breaks when the cut separates
+/// the middles of the two cells.
 struct Cut {
   Eigen::Vector3f corner{0, 0, 0};  ///< metres
   Eigen::Vector3f along{1, 0, 0};   ///< metres: a side of a parallelogram, from its corner

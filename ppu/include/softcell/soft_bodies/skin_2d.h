@@ -85,16 +85,16 @@ std::vector<Skin2d> make_skin_parts_2d(const Lattice<2>& lattice, float margin, 
 /// @pre  the lattice has cells
 Skin2d make_cover_2d(const Lattice<2>& lattice, const std::function<bool(const Eigen::Vector2i&)>& drawn);
 
-/// The skin of a piece of a broken body (fracture.h): the part of the whole skin in the piece's cells, cut along the cells' edges. The skins
-/// of all pieces together are the whole skin. It also opens along cracks that do not go all the way through. At cuts there are no slopes. If
-/// the whole skin has outlines, outlines go around the piece, cuts included. Deterministic.
+/// The skin of a piece of a broken body (fracture.h): the part of the whole skin in the piece's cells, cut along the cells' edges. The
+/// skins of all pieces together are the whole skin. It also opens along cracks that do not go all the way through. At cuts there are no
+/// slopes. If the whole skin has outlines, outlines go around the piece, cuts included. Deterministic.
 /// @param whole    made by make_skin_2d() or make_cover_2d() for `lattice`
 /// @param lattice  of the body before it first broke   @param piece  SoftBodyModel::lattice() of the piece
 /// @pre  the piece is a part of that lattice
 Skin2d skin_of_piece(const Skin2d& whole, const Lattice<2>& lattice, const Lattice<2>& piece);
 
-/// @throws std::invalid_argument  the skin moves with cells or particles that the lattice has not, or its cells have another edge: it was made
-/// for another lattice
+/// @throws std::invalid_argument  the skin moves with cells or particles that the lattice has not, or its cells have another edge: it was
+/// made for another lattice
 void validate(const Skin2d& skin, const Lattice<2>& lattice);
 
 /// The point bound to a cell, also if it lies outside of the cell.

@@ -34,8 +34,8 @@ class SoftBodyModel {
   std::span<const float> masses() const { return masses_; }        ///< kg, of each particle
   float mass() const { return mass_; }                             ///< kg, of the body
 
-  /// Numbers of the outer particles, ascending; a body without contacts has none. With ContactMethod::kSpheres these particles collide; else
-  /// what is drawn does.
+  /// Numbers of the outer particles, ascending; a body without contacts has none. With ContactMethod::kSpheres these particles collide;
+  /// else what is drawn does.
   ///
   /// In two dimensions a particle is outer if fewer than four cells surround it; in a piece, the next particles behind its cuts are outer,
   /// too. In three dimensions all corners of the cells at the lattice's boundary are outer, so outer particles form two layers. One layer
@@ -54,7 +54,7 @@ class SoftBodyModel {
   /// In two dimensions it is a parameter of make_soft_body_model(). Circles of half a cell, the default, touch each other: nothing gets
   /// between the particles of a body, and other things stop half a cell before the drawn shape. Smaller circles let small things in.
   float contact_radius() const { return contact_radius_in_cells_ * lattice_.spacing; }
-  /// Contact radius of one particle, metres. In two dimensions particles at a cut have half of it, because no material reaches beyond a cut.
+  /// Contact radius of one particle, metres. In two dimensions particles at a cut have half of it: no material reaches beyond a cut.
   float contact_radius(std::size_t particle) const {
     return is_at_cut(particle) ? contact_radius() / 2 : contact_radius();
   }

@@ -11,7 +11,6 @@
 #include <concepts>
 #include <cstdint>
 #include <optional>
-#include <utility>
 #include <vector>
 
 #include "softcell/soft_bodies/lattice.h"

@@ -36,8 +36,8 @@ struct StaticMeshId {
 };
 
 enum class Pattern : std::uint8_t {
-  plain,
-  tiles,  ///< squares of 1 m in two shades on the mesh's own xz plane, with fine lines between them
+  kPlain,
+  kTiles,  ///< squares of 1 m in two shades on the mesh's own xz plane, with fine lines between them
 };
 
 /// A skinned mesh at its current vertices.
@@ -61,7 +61,7 @@ struct StaticDraw {
   Eigen::Matrix4f pose = Eigen::Matrix4f::Identity();  ///< affine, determinant above 0
   Colour colour{0.8f, 0.8f, 0.8f};
   float opacity = 1;  ///< 0..1; below 1 front sides are blended over what is behind them
-  Pattern pattern = Pattern::plain;
+  Pattern pattern = Pattern::kPlain;
   bool always_shadow = false;            ///< it casts a shadow also with an opacity below 1
   std::span<const PartDraw> parts = {};  ///< as in SkinnedDraw, instead of `colour` and `pattern`
 };

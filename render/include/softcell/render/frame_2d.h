@@ -29,8 +29,8 @@ struct Vertex2d {
 static_assert(sizeof(Vertex2d) == 24, "uploaded as it is");
 
 enum class Fill2d : std::uint8_t {
-  plain,
-  hatched,  ///< with slanting lines, as drawings show fixed objects
+  kPlain,
+  kHatched,  ///< with slanting lines, as drawings show fixed objects
 };
 
 /// Triangles of one colour, lit from the upper left.
@@ -39,7 +39,7 @@ struct Shape2d {
   std::span<const Vertex2d> vertices;  ///< successive shapes that share their vertices upload them once
   Colour colour{0.8f, 0.8f, 0.8f};
   float opacity = 1;
-  Fill2d fill = Fill2d::plain;
+  Fill2d fill = Fill2d::kPlain;
   bool casts_shadow = true;
   std::optional<TextureId> texture = {};  ///< instead of the colour; its alpha cuts holes
 };

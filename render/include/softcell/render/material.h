@@ -13,19 +13,19 @@ struct TextureId {
 };
 
 /// What a texture shows beyond its borders.
-enum class Wrap : std::uint8_t { repeat, mirror, clamp };
+enum class Wrap : std::uint8_t { kRepeat, kMirror, kClamp };
 
 /// How the pixels of a picture become a texture.
 struct TextureSettings {
   bool linear = false;  ///< the channels are numbers, as in normal maps, not sRGB-encoded colours
-  Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
+  Wrap wrap_u = Wrap::kRepeat, wrap_v = Wrap::kRepeat;
 };
 
 /// How a material with an alpha below 1 is drawn.
 enum class AlphaMode : std::uint8_t {
-  opaque,  ///< everything is drawn; alpha is not used
-  mask,    ///< only places with an alpha of the cutoff or more
-  blend,   ///< a share of each pixel's samples, in any order of parts; five steps with the usual four samples
+  kOpaque,  ///< everything is drawn; alpha is not used
+  kMask,    ///< only places with an alpha of the cutoff or more
+  kBlend,  ///< a share of each pixel's samples, in any order of parts; five steps with the usual four samples
 };
 
 /// The metallic-roughness model of glTF 2.0 under one sun, sky and ground. Each number is multiplied by the texture beside it.
@@ -42,7 +42,7 @@ struct Material {
   float normal_scale = 1;                        ///< of x and y
   Eigen::Vector3f emission{0, 0, 0};             ///< emitted light, linear, each channel 0 or above
   std::optional<TextureId> emission_texture = {};
-  AlphaMode alpha_mode = AlphaMode::opaque;
+  AlphaMode alpha_mode = AlphaMode::kOpaque;
   float alpha_cutoff = 0.5f;  ///< above 0
   bool two_sided = false;     ///< draw inner sides, too
 };

@@ -9,14 +9,14 @@
 namespace softcell::render {
 
 enum class Backend {
-  automatic,  ///< OSMesa, else EGL
-  osmesa,     ///< libOSMesa: always in software; gone from Mesa 25.1 on
-  egl,        ///< libEGL on Mesa's surfaceless platform; in software after pin_software_rasterizer()
+  kAutomatic,  ///< OSMesa, else EGL
+  kOsmesa,     ///< libOSMesa: always in software; gone from Mesa 25.1 on
+  kEgl,        ///< libEGL on Mesa's surfaceless platform; in software after pin_software_rasterizer()
 };
 
 /// Makes a context and makes it current on the calling thread.
 /// @throws std::runtime_error  names the missing library and the package that contains it, or what Mesa refused.
-std::unique_ptr<GlContext> create_offscreen_context(Backend backend = Backend::automatic);
+std::unique_ptr<GlContext> create_offscreen_context(Backend backend = Backend::kAutomatic);
 
 /// Makes pictures the same on every processor with AVX and FMA, which softcell's native engine needs anyway.
 /// Selects Mesa's software rasterizer llvmpipe, fixes the instruction set and vector width of its code

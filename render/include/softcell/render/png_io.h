@@ -13,8 +13,8 @@
 namespace softcell::render {
 
 enum class PngEffort {
-  fast,   ///< for frames: about 5 times as fast, about 1.7 times as large
-  small,  ///< for pictures that are kept, such as golden ones
+  kFast,   ///< for frames: about 5 times as fast, about 1.7 times as large
+  kSmall,  ///< for pictures that are kept, such as golden ones
 };
 
 /// A text in a PNG file, for programs that show information about a picture.
@@ -29,7 +29,7 @@ struct PngText {
 /// @pre  the picture is whole
 /// @throws std::runtime_error  with the file and the reason: empty picture, directory missing or not
 /// writable, disk full.
-void write_png(const std::filesystem::path& path, const Image& image, PngEffort effort = PngEffort::fast,
+void write_png(const std::filesystem::path& path, const Image& image, PngEffort effort = PngEffort::kFast,
                std::span<const PngText> texts = {});
 
 /// The texts of a PNG file, in order. Any thread. @throws std::runtime_error  as read_png()

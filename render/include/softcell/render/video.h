@@ -11,10 +11,10 @@
 namespace softcell::render {
 
 enum class VideoFormat : std::uint8_t {
-  mp4,   ///< H.264 in yuv420p, which every player supports
-  webm,  ///< VP9 in yuv420p
-  gif,   ///< 256 colours per frame; each frame lasts a whole number of hundredths of a second
-  apng,  ///< a moving PNG: every colour, large
+  kMp4,   ///< H.264 in yuv420p, which every player supports
+  kWebm,  ///< VP9 in yuv420p
+  kGif,   ///< 256 colours per frame; each frame lasts a whole number of hundredths of a second
+  kApng,  ///< a moving PNG: every colour, large
 };
 
 /// The format for the file's extension, in small or capital letters; none: the extension is unknown.

@@ -1,0 +1,113 @@
+#pragma once
+// How a point of a body meets one triangle of an obstacle.
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+
+#include "ppu/contacts/contact_terms.h"
+#include "ppu/surfaces/known_triangles.h"
+#include "ppu/surfaces/obstacle.h"
+#include "ppu/surfaces/triangle_distance.h"
+
+namespace softcell::ppu {
+
+// A point this near behind a triangle, in cells, has been pressed through it; a point this near in front may have been, from the other
+// side.
+inline constexpr float kPressedThrough = 0.25f;
+// A point farther behind, up to this, has been pressed through only if the line to it from well inside of the body crosses the triangle.
+inline constexpr float kPressedDeepest = 2;
+
+/// A point before and after the substep, in the frame of an obstacle, as if the obstacle stood still.
+struct PointWay {
+  Eigen::Vector3f from, to;
+};
+
+/// A contact in the obstacle's frame.
+struct ObstacleHit {
+  Eigen::Vector3f normal;
+  float end;  ///< metres, along the normal, at the end of the motion: below 0 inside
+};
+
+/// How far a point is beside a triangle, squared: 0 if it is above or below it.
+/// @param normal  of the triangle, of unit length
+template <typename Real>
+Real squared_beside(const std::array<Eigen::Vector3f, 3>& triangle, const Eigen::Vector3f& normal,
+                    const Eigen::Vector3f& point) {
+  using Vector = Eigen::Vector3<Real>;
+  const Vector n = normal.cast<Real>(), at = point.cast<Real>();
+  const Vector beside =
+      at -
+      nearest_point<Real>({triangle[0].cast<Real>(), triangle[1].cast<Real>(), triangle[2].cast<Real>()}, at);
+  return (beside - n * n.dot(beside)).squaredNorm();
+}
+
+/// One of an obstacle's triangles.
+class ObstacleTriangle {
+ public:
+  ObstacleTriangle(const Obstacle& obstacle, const KnownTriangles& known, std::uint32_t number)
+      : triangle_(obstacle.triangles[number]),
+        face_(known.face(number)),
+        box_(known.boxes().at(number)),
+        rounding_(obstacle.rounding) {}
+
+  bool has_area() const { return face_.area > 0; }
+  const Eigen::Vector3f& normal() const { return face_.normal; }
+  /// Height above the triangle's plane, on the side from which it is wound counterclockwise: metres.
+  float height(const Eigen::Vector3f& point) const { return face_.normal.dot(point - triangle_[0]); }
+
+  /// Whether a point is above or below the triangle, or beside it by no more than `most` metres. @pre has_area()
+  bool is_over(const Eigen::Vector3f& point, float most) const {
+    // Most triangles are farther beside the point than above or below it: no need for the nearest point.
+    const float farthest = 1.01f * (most + std::abs(height(point)));
+    if ((point.array() < box_.low.array() - farthest).any() ||
+        (point.array() > box_.high.array() + farthest).any())
+      return false;
+    // For triangles of a kilometre, or needles, floats give the nearest point only to a tenth of a millimetre, or worse.
+    const bool is_exact = face_.rounding < most * face_.area;
+    if (is_exact) return squared_beside<float>(triangle_, face_.normal, point) <= most * most;
+    return squared_beside<double>(triangle_, face_.normal, point) <= double{most} * double{most};
+  }
+
+  /// Whether two points are on different sides of the triangle's plane.
+  bool parts(const Eigen::Vector3f& a, const Eigen::Vector3f& b) const {
+    return face_.cross.dot(a - triangle_[0]) * face_.cross.dot(b - triangle_[0]) < 0;
+  }
+
+  /// @param front  1 or -1: the front is the side from which it is wound counterclockwise, or the other one
+  /// @param inside  a place of the point's body, before the substep
+  std::optional<ObstacleHit> meet(const PointWay& way, const Eigen::Vector3f& inside, float spacing,
+                                  float front) const {
+    if (!has_area()) return {};
+    const float near = kNear * spacing;
+    float side = front;
+    float from = side * height(way.from);
+    bool is_deep = false;
+    if (from < -kPressedThrough * spacing) {
+      const float of_inside = side * height(inside);
+      const bool may_be_deep = from > -kPressedDeepest * spacing && of_inside > 0;
+      const float crossing = of_inside / (of_inside - from);
+      is_deep = may_be_deep && is_over(inside + crossing * (way.from - inside), near);
+      if (!is_deep) side = -side, from = -from;
+    }
+    const float to = side * height(way.to) - rounding_;
+    if (to > near) return {};
+    if (is_deep) return ObstacleHit{side * normal(), to};  // the next triangle may be the one over the point
+    const float share =
+        from - to > 0 ? std::clamp((from - rounding_) / (from - rounding_ - to), 0.0f, 1.0f) : 0.0f;
+    if (!is_over(way.from + share * (way.to - way.from), near)) return {};
+    return ObstacleHit{side * normal(), to};
+  }
+
+ private:
+  const std::array<Eigen::Vector3f, 3>& triangle_;
+  const KnownTriangles::Face& face_;
+  Bounds<3> box_;
+  float rounding_;
+};
+
+}  // namespace softcell::ppu
