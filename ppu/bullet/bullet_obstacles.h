@@ -19,7 +19,8 @@ namespace softcell::ppu {
 
 /// The rigid bodies of a world that are near some boxes. Used by one thread. Allocates when there are more of them than ever before.
 ///
-/// Knows planes, spheres, boxes, capsules, cylinders, cones, compounds, triangle meshes and height fields, and hulls of other convex shapes.
+/// Knows planes, spheres, boxes, capsules, cylinders, cones, compounds, triangle meshes and height fields. Any other convex shape is
+/// replaced by its hull.
 class BulletObstacles {
  public:
   /// Which objects of the world are taken.
