@@ -26,11 +26,12 @@ class KnownModels {
     known_.try_emplace(model, std::move(known));
   }
 
-  /// Frees what is kept of one model, if it is unused, and after a piece also that of the whole. The time does not depend on the number of
-  /// models.
-  /// @param model   need not exist any longer  @param before  called with each before it is freed
+  /// Tells that a body has gone or has another model now. Frees what is kept of its model, if that is unused, and after a piece also what is
+  /// kept of the whole. The time does not depend on the number of models.
+  /// @param model   that the body had; need not exist any longer  @param before  called with each before it is freed
   template <typename Before>
   void forget(const Model* model, const Before& before) {
+    steps_left_ = kSteps;
     for (auto there = known_.find(model); there != known_.end() && is_unused(*there);
          there = known_.find(model)) {
       model = there->first->whole().get();
@@ -39,9 +40,14 @@ class KnownModels {
     }
   }
 
-  /// Frees all that is unused. @param before  as above
+  /// Call it in each step. If a body has gone not long ago, frees all that is unused in the first step after that, and in a later one: a
+  /// solver holds the model until its next step, and a thread that disposes of a large body for some time.
+  /// @param before  as above
   template <typename Before>
   void forget_unused(const Before& before) {
+    if (steps_left_ == 0) return;
+    const bool is_first = steps_left_-- == kSteps;
+    if (!is_first && steps_left_ > 0) return;
     const auto forget = [&](const auto& entry) {
       if (!is_unused(entry)) return false;
       before(*entry.second);
@@ -61,7 +67,10 @@ class KnownModels {
     return known.use_count() == 1 && !may_come_back;
   }
 
+  static constexpr int kSteps = 120;
+
   std::unordered_map<const Model*, std::shared_ptr<const Known>> known_;
+  int steps_left_ = 0;  // in which something may be found that is unused
 };
 
 }  // namespace softcell::ppu

@@ -400,16 +400,13 @@ void SurfaceContacts2d::forget_model(const SoftBodyModel<2>* model) {
   models_.forget(model, [&](const Model& known) {
     if (worker_) worker_->forget(known.contact);
   });
-  may_be_unused_ = true;  // somebody may hold the model for some time, as a solver does until its next step
 }
 
 /// @pre all bodies have been in a step, or there are none
 void SurfaceContacts2d::forget_unused() {
-  if (!may_be_unused_) return;
   models_.forget_unused([&](const Model& known) {
     if (worker_) worker_->forget(known.contact);
   });
-  may_be_unused_ = false;
 }
 
 }  // namespace softcell::ppu

@@ -91,7 +91,7 @@ class SurfaceContacts2d {
   /// Follows bodies and the world to another origin. @param by  metres, which all positions have just been moved by
   void shift(const Eigen::Vector2f& by);
   /// Tells that a body has gone or has another model now. Frees what is kept of a model that no body has any longer, if it is a piece's or
-  /// nobody else holds the model: now, or in the next step.
+  /// nobody else holds the model: now, or in a step soon.
   /// @param model  that the body had; need not exist any longer  @pre between steps
   void forget_model(const SoftBodyModel<2>* model);
 
@@ -138,7 +138,6 @@ class SurfaceContacts2d {
   b2World& world_;
   std::shared_ptr<ContactWorker> worker_;
   KnownModels<2, Model> models_;
-  bool may_be_unused_ = false;  // some of these
   std::unordered_map<const Box2dBody*, Kept> kept_;
   Box2dObstacles obstacles_{Box2dObstacles::Fixtures::kSolid};
   Box2dLinks links_;

@@ -43,15 +43,12 @@ void SurfaceContacts::forget_model(const SoftBodyModel<3>* model) {
   models_.forget(model, [&](const ContactModel& contact) {
     if (worker_) worker_->forget(contact);
   });
-  may_be_unused_ = true;  // somebody may hold the model for some time, as a solver does until its next step
 }
 
 void SurfaceContacts::forget_unused() {
-  if (!may_be_unused_) return;
   models_.forget_unused([&](const ContactModel& contact) {
     if (worker_) worker_->forget(contact);
   });
-  may_be_unused_ = false;
 }
 
 template <typename Is>

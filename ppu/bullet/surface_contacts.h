@@ -36,7 +36,7 @@ class SurfaceContacts {
   /// Keeps a model that was made elsewhere, as if contact_model() had made it.
   void adopt(std::unique_ptr<ContactModel> contact);
   /// Tells that a body has gone or has another model now. Frees what is kept of a model that no body has any longer, if it is a piece's or
-  /// nobody else holds the model: now, or in the next substep.
+  /// nobody else holds the model: now, or in a substep soon.
   /// @param model  that the body had; need not exist any longer  @pre between substeps
   void forget_model(const SoftBodyModel<3>* model);
 
@@ -80,7 +80,6 @@ class SurfaceContacts {
   btDiscreteDynamicsWorld& world_;
   std::shared_ptr<ContactWorker> worker_;
   KnownModels<3, ContactModel> models_;
-  bool may_be_unused_ = false;  // some of these
   BulletObstacles obstacles_{BulletObstacles::Objects::kSolid};
   BulletLinks links_;
   SurfaceAttachments attachments_{world_};
