@@ -380,6 +380,15 @@ TEST(RunVerb, CountsRunsThatTheEndOfTheProgramEndsAndFindsNothingInThem) {
   EXPECT_EQ(trace.find("deadline-exceeded"), std::string::npos) << trace;
 }
 
+TEST(RunVerb, RemembersWhatAPluginDidThatIsUnloaded) {
+  const CommandResult run =
+      run_softcell("run -- " LIBSPE2_PROGRAMS "/libspe2_reloads_plugin " LIBSPE2_PLUGIN);
+  EXPECT_EQ(run.status, 3) << run.output;
+  EXPECT_TRUE(has(run, "ok\n")) << run.output;
+  EXPECT_TRUE(has(run, "status 0; 20 SPE contexts, 20 runs, ")) << run.output;
+  EXPECT_TRUE(has(run, ", 1 finding\n")) << run.output;
+}
+
 TEST(RunVerb, KeepsAllMemoryBelow4GB) {
 #if SC_ADDRESS_SANITIZER || SC_THREAD_SANITIZER
   GTEST_SKIP() << "sanitizers have their own heap and stacks";
