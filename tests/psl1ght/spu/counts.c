@@ -71,6 +71,10 @@ int main(uint64_t shared, uint64_t own, uint64_t from, uint64_t to) {
   spu_dma_small_getf(bytes + 32, from + 48, 4, 5, 0, 0);
   CHECK(spu_dma_cancel_and_wait_tag_status_any(1 << 5) == 1 << 5);
   CHECK(bytes[31] == 31 && bytes[32] == 48);
+  spu_dma_and_wait(bytes + 16, from, 16, 6, MFC_GET_CMD);
+  CHECK(bytes[31] == 15);
+  spu_dma_large_cmd((uintptr_t)bytes, from, 20, 6, MFC_GET_CMD);
+  CHECK(spu_dma_wait_tag_status_all(1 << 6) == 1 << 6 && bytes[19] == 19 && bytes[20] == 4);
   spu_thread_exit(0);
   return 0;
 }
