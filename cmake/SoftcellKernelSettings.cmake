@@ -72,8 +72,17 @@ set(SOFTCELL_PROGRAM_FLAGS -ffunction-sections -fdata-sections -D__SPU__ -nostdi
   -D__thread= -D_Thread_local=
   "-D__ea=_Pragma(\"GCC error \\\"there is no address space __ea here: move bytes of main storage by DMA, with mfc_get() and mfc_put()\\\"\")")
 # In C++ the word may stand alone in a function, where it means static.
-set(SOFTCELL_PROGRAM_CXX_FLAGS -Werror=return-type
+set(SOFTCELL_PROGRAM_CXX_FLAGS
   "-Dthread_local=_Pragma(\"GCC error \\\"one thread runs in a local store: leave out thread_local, or in a function write static\\\"\")")
+# What kernels are compiled with, for programs. GCC's freestanding main is a function like any other, which has to return something
+# itself; Clang's other main takes nothing but argc and argv.
+set(SOFTCELL_PROGRAM_KERNEL_FLAGS ${SOFTCELL_KERNEL_FLAGS})
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  list(REMOVE_ITEM SOFTCELL_PROGRAM_KERNEL_FLAGS -ffreestanding)
+  list(APPEND SOFTCELL_PROGRAM_CXX_FLAGS -Wno-main)
+else()
+  list(APPEND SOFTCELL_PROGRAM_CXX_FLAGS -Werror=return-type)
+endif()
 # Of a C source that softcell_vector_casts has rewritten: lines are those of the source, columns are not.
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   set(SOFTCELL_C_REWRITTEN_FLAGS -fno-diagnostics-show-caret)

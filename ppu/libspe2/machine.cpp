@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <atomic>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -44,15 +45,25 @@ void append(base::JsonText& json, const std::vector<ls_sim::Finding>& findings) 
   json.raw("]");
 }
 
+std::atomic<Machine*> machine_of_process{nullptr};
+
+/// At exit(), a process's libraries come last, behind all exit handlers and destructors of the program, which may still
+/// need its SPEs.
+[[gnu::destructor]] void end_library() { Machine::at_exit(); }
+
+[[noreturn]] void wait_for_the_end() {
+  for (;;) pause();
+}
+
 }  // namespace
 
 Machine& Machine::get() {
   static Machine* const machine = [] {
     try {
       auto* made = new Machine;
-      std::atexit(&Machine::at_exit);
       std::at_quick_exit(&Machine::at_exit);
       map_registers();
+      machine_of_process = made;
       return made;
     } catch (const std::exception& error) {
       complain(error.what());
@@ -107,7 +118,7 @@ void Machine::end_run() {
 void Machine::write_report_so_far() {
   if (settings_.report_file.empty() || process_ != getpid()) return;
   const std::lock_guard lock(report_mutex_);
-  if (is_ending_) return;
+  if (is_ending()) return;
   try {
     write_report(Report::kSoFar);
   } catch (const std::exception&) {  // is said at the end, when it cannot be written either
@@ -115,9 +126,16 @@ void Machine::write_report_so_far() {
 }
 
 void Machine::at_exit() {
-  Machine& machine = get();
+  Machine* const made = machine_of_process;
+  if (made == nullptr) return;
+  Machine& machine = *made;
   if (machine.process_ != getpid()) return;  // a fork of the program
-  if (machine.is_ending_.exchange(true)) return;
+  pid_t first = 0;
+  if (!machine.ending_thread_.compare_exchange_strong(first, gettid())) {
+    if (first != gettid())
+      wait_for_the_end();  // the first one's status counts, and its reports are not cut off
+    return;
+  }
   try {
     machine.end_runs();
     machine.count_contexts();
@@ -136,6 +154,10 @@ void Machine::end_process(int status) {
   at_exit();
   std::fflush(nullptr);
   _exit(status);
+}
+
+void Machine::stay_if_ending() const {
+  if (is_ending() && process_ == getpid()) wait_for_the_end();
 }
 
 /// A program may end while contexts run; they end with it.

@@ -2,6 +2,7 @@
 // What all contexts of the process share: main storage, which is the process's own memory, and what is found out
 // about the program.
 
+#include <sys/types.h>
 #include <atomic>
 #include <cstdint>
 #include <memory>
@@ -39,7 +40,11 @@ class Machine {
   /// Ends the process at once, with its reports: the program itself may be waiting for ever.
   [[noreturn]] void end_process(int status);
   /// Whether the end of the process ends all runs.
-  bool is_ending() const { return is_ending_; }
+  bool is_ending() const { return ending_thread_ != 0; }
+  /// Does not return when the process ends: as on the Cell, its threads hear nothing more of their SPEs.
+  void stay_if_ending() const;
+  /// For the process's last moments. Only the first call has an effect; another thread's does not return.
+  static void at_exit();
 
   void count_context();
   void count_run() { runs_.fetch_add(1, std::memory_order_relaxed); }
@@ -51,7 +56,6 @@ class Machine {
 
  private:
   Machine();
-  static void at_exit();
   void end_runs();
   void count_contexts();
   void print_findings() const;
@@ -60,7 +64,7 @@ class Machine {
   void write_report(Report which) const;
   void write_report_so_far();
 
-  std::atomic<bool> is_ending_{false};
+  std::atomic<pid_t> ending_thread_{0};  ///< 0: the process goes on
   const Settings settings_;
   const int process_;
   dma::AddressSpace memory_;

@@ -145,6 +145,7 @@ Outcome answer_calls(spe_context& context, ContextStop& stop, bool callbacks) {
       return failure(SPE_CALLBACK_ERROR, result, static_cast<int>(code << kStatusCodeShift) | kStatusStopped,
                      EFAULT);
     }
+    Machine::get().stay_if_ending();
     stop = context.spe->resume();
   }
 }
@@ -168,6 +169,7 @@ int run(spe_context_ptr_t spe, spe_context& context, unsigned int* entry, unsign
     const std::lock_guard lock(context.mutex);
     if (context.image == nullptr) return fail(ENOEXEC);
   }
+  Machine::get().stay_if_ending();
   Machine::get().count_run();
   std::optional<ContextStop> stop;
   try {
@@ -178,8 +180,8 @@ int run(spe_context_ptr_t spe, spe_context& context, unsigned int* entry, unsign
   }
   if (!stop) return fail(EINVAL);
   const Outcome outcome = answer_calls(context, *stop, (flags & SPE_NO_CALLBACKS) == 0);
-  // A program may end while contexts run: that is no mistake of theirs.
-  if (stop->result.fault && !Machine::get().is_ending()) Machine::get().report(*stop->result.fault);
+  Machine::get().stay_if_ending();
+  if (stop->result.fault) Machine::get().report(*stop->result.fault);
   Machine::get().end_run();
   *entry = stop->next.value;
   {

@@ -74,7 +74,7 @@ void fail(Group& group, const SpuThread& thread, const dma::Fault& fault, u32 ex
   }
   report_fault(fault, queue != nullptr);
   const std::lock_guard lock(lv2.mutex);
-  if (queue != nullptr)
+  if (queue != nullptr && !Machine::get().is_ending())
     lv2.send(*queue, {SPU_THREAD_GROUP_EVENT_EXCEPTION_KEY, group.number, thread.number, exception});
   end_group(group, {SPU_THREAD_GROUP_JOIN_TERMINATED, exception});
 }
@@ -236,6 +236,7 @@ void serve(const std::shared_ptr<Group>& group) {
   for (const auto& thread : group->threads) {
     Machine::get().count_last(*thread->context);
   }
+  Machine::get().stay_if_ending();
   const std::lock_guard lock(lv2.mutex);
   group->runs = false;
   group->end = group->ending ? group->ending_with : Group::End{SPU_THREAD_GROUP_JOIN_ALL_THREADS_EXIT, 0};

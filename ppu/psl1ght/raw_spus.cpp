@@ -70,6 +70,7 @@ void run(RawSpu& spu, bool goes_on) {
   } catch (const std::exception& error) {
     Machine::complain(error.what());
   }
+  Machine::get().stay_if_ending();
   const u32 status = status_of(stop.result);
   bool told_to = false;
   {

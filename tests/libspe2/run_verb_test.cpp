@@ -5,6 +5,7 @@
 #include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <string>
@@ -344,6 +345,48 @@ TEST(Environment, AProgramMayEndWhileItsContextsRun) {
   const CommandResult run = run_shell(LIBSPE2_PROGRAMS "/libspe2_never_ends leave");
   EXPECT_EQ(run.status, 5) << run.output;
   EXPECT_FALSE(has(run, "deadline-exceeded")) << run.output;
+}
+
+TEST(Environment, RunsThatTheEndOfTheProgramEndsDoNotComeBack) {
+  const std::string program = LIBSPE2_PROGRAMS "/libspe2_ends_meanwhile ";
+  for (int i = 0; i < 5; ++i) {
+    const CommandResult returns = run_shell(program + "return");
+    EXPECT_EQ(returns.status, 0) << returns.output;
+    EXPECT_EQ(returns.output, "ok\n");
+  }
+  for (const std::string way : {"exit", "quick"}) {
+    const CommandResult exits = run_shell(program + way);
+    EXPECT_EQ(exits.status, 7) << way << ": " << exits.output;
+    EXPECT_EQ(exits.output, "ok\n") << way;
+  }
+}
+
+TEST(Environment, ExitHandlersFindTheSpesAlive) {
+  const CommandResult run = run_shell(LIBSPE2_PROGRAMS "/libspe2_ends_meanwhile handler");
+  EXPECT_EQ(run.status, 0) << run.output;
+  EXPECT_EQ(run.output, "ok\nasked\n");
+}
+
+TEST(RunVerb, CountsRunsThatTheEndOfTheProgramEndsAndFindsNothingInThem) {
+  const ScratchFolder folder;
+  const CommandResult run =
+      run_softcell("run --trace " + (folder / "t.json") + " -- " LIBSPE2_PROGRAMS "/libspe2_ends_meanwhile");
+  EXPECT_EQ(run.status, 0) << run.output;
+  EXPECT_TRUE(has(run, "status 0; 7 SPE contexts, 7 runs, 0 DMA commands (0.0 MB), 0 findings"))
+      << run.output;
+  std::ifstream file(folder / "t.json");
+  const std::string trace((std::istreambuf_iterator<char>(file)), {});
+  EXPECT_NE(trace.find("echoes"), std::string::npos) << "no run in the trace";
+  EXPECT_EQ(trace.find("deadline-exceeded"), std::string::npos) << trace;
+}
+
+TEST(RunVerb, RemembersWhatAPluginDidThatIsUnloaded) {
+  const CommandResult run =
+      run_softcell("run -- " LIBSPE2_PROGRAMS "/libspe2_reloads_plugin " LIBSPE2_PLUGIN);
+  EXPECT_EQ(run.status, 3) << run.output;
+  EXPECT_TRUE(has(run, "ok\n")) << run.output;
+  EXPECT_TRUE(has(run, "status 0; 20 SPE contexts, 20 runs, ")) << run.output;
+  EXPECT_TRUE(has(run, ", 0 findings, 1 fault\n")) << run.output;
 }
 
 TEST(RunVerb, KeepsAllMemoryBelow4GB) {

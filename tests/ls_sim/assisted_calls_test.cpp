@@ -44,5 +44,43 @@ TEST(AssistedCalls, AFwriteThatFailsHasWrittenNothing) {
   EXPECT_EQ(fwrite_to("/dev/full", 1, 100), 0u);
 }
 
+struct Told {
+  std::uint32_t lsa, bytes;
+  bool is_store;
+  bool operator==(const Told&) const = default;
+};
+
+/// What a listener hears of a call of the host's kind with these words as arguments.
+std::vector<Told> told_of(std::vector<std::byte>& local_store, std::uint32_t function,
+                          const std::vector<std::uint32_t>& arguments) {
+  constexpr std::uint32_t kRequest = 0x100;
+  for (std::size_t i = 0; i < arguments.size(); ++i)
+    std::memcpy(&local_store[kRequest + 16 * i], &arguments[i], sizeof arguments[i]);
+  std::vector<Told> told;
+  AssistedCalls calls(files_of_process(), local_store, CallerKind::kHost);
+  calls.set_listener([&](std::uint32_t lsa, std::uint32_t bytes, bool is_store) {
+    if (lsa < kRequest || lsa >= kRequest + 64) told.push_back({lsa, bytes, is_store});
+  });
+  calls.serve(kC99Call, function << 24 | kRequest);
+  return told;
+}
+
+TEST(AssistedCalls, TellWhatTheyReadAndWrite) {
+  std::vector<std::byte> local_store(dma::kLocalStoreBytes);
+  const auto set_text = [&](std::uint32_t lsa, const char* text) {
+    std::memcpy(&local_store[lsa], text, std::strlen(text) + 1);
+  };
+  constexpr std::uint32_t kFormat = 0x1000, kTo = 0x2000, kList = 0x3000;
+  set_text(kFormat, "eleven char");
+  EXPECT_EQ(told_of(local_store, kVsprintf, {kTo, kFormat, kList}),
+            (std::vector<Told>{{kFormat, 12, false}, {kTo, 12, true}}));
+  EXPECT_EQ(told_of(local_store, kFwrite, {0x4000, 4, 25, 99}), (std::vector<Told>{{0x4000, 100, false}}));
+  // Addresses wrap around.
+  set_text(0x3FFFC, "abc");
+  local_store[0x3FFFF] = std::byte{'d'};
+  EXPECT_EQ(told_of(local_store, kRemove, {0x3FFFC}),
+            (std::vector<Told>{{0x3FFFC, 4, false}, {0, 1, false}}));
+}
+
 }  // namespace
 }  // namespace softcell::ls_sim::assisted

@@ -120,6 +120,60 @@ file(WRITE ${lab}/threads.cpp "int main() {\n  thread_local int a = 3;\n  return
 says(1 "threads.cpp:2:[0-9]+: error: one thread runs in a local store: leave out thread_local" ${BIN}/softcell-spu-g++ ${lab}/threads.cpp -o ${lab}/threads)
 says(1 "one thread runs in a local store: leave out thread_local" ${BIN}/softcell-spu-g++ -Uthread_local ${lab}/threads.cpp -o ${lab}/threads)
 
+# C++ as the SPU's compiler takes it: a main without a return returns 0 and a function without one is a warning. (Clang refuses both.)
+set(gxx ${BIN}/softcell-spu-g++)
+if(COMPILER STREQUAL "GNU")
+  file(WRITE ${lab}/no_return.cpp "#include <stdio.h>\n#include <spu_intrinsics.h>\nint main(PARAMETERS) { printf(\"hello\\n\"); }\n")
+  foreach(parameters "" "unsigned long long, unsigned long long, unsigned long long" "vec_uint4, vec_uint4, vec_uint4" "int, char**")
+    says(0 "^$" ${gxx} "-DPARAMETERS=${parameters}" ${lab}/no_return.cpp -o ${lab}/no_return)
+    says(0 "hello\n" ${BIN}/softcell spu run ${lab}/no_return)
+    says(0 "hello\n" ${BIN}/softcell spu run --checked ${lab}/no_return)
+  endforeach()
+  file(WRITE ${lab}/enumeration.cpp "enum Shape { kRound, kFlat };\n"
+    "static int area(Shape shape) { switch (shape) { case kRound: return 1; case kFlat: return 2; } }\n"
+    "int main() { volatile Shape shape = kFlat; return area(shape); }\n")
+  says(0 "warning: [^\n]*\\[-Wreturn-type\\]" ${gxx} ${lab}/enumeration.cpp -o ${lab}/enumeration)
+  says(0 "^$" ${gxx} -w ${lab}/enumeration.cpp -o ${lab}/enumeration)
+  says(1 "ended with status 2" ${BIN}/softcell spu run ${lab}/enumeration)
+endif()
+
+# Dependencies of programs that one call compiles and links.
+file(MAKE_DIRECTORY ${lab}/depends)
+file(WRITE ${lab}/depends/n.h "#define N 3\n")
+file(WRITE "${lab}/depends/a b.c" "#include \"n.h\"\nint other(void) { return N; }\n")
+file(WRITE ${lab}/depends/main.c "#include \"n.h\"\nint other(void);\nint main(void) { return other() - N; }\n")
+set(gcc_there cd ${lab}/depends && ${gcc})
+string(REPLACE ";" " " gcc_there "${gcc_there}")
+set(rules "^p.elf: main.c n.h\np.elf: a\\\\ b.c n.h\n$")
+says(0 "${rules}" sh -c "${gcc_there} -MMD main.c 'a b.c' -o p.elf && cat p.d")
+says(0 "${rules}" sh -c "${gcc_there} -MD -MF z.d main.c 'a b.c' -o p.elf && cat z.d")
+says(0 "^a\\\\ b.o: a\\\\ b.c n.h\n$" sh -c "${gcc_there} -MMD -c 'a b.c' && cat 'a b.d'")
+says(0 "^mine: main.c n.h\n" sh -c "${gcc_there} -MMD -MT mine main.c 'a b.c' && cat main.d")
+
+# Folders that are not there.
+says(0 "^$" sh -c "cd ${lab} && TMPDIR=${lab}/nowhere ${gcc} value.c main_of_archive.c -o value")
+says(1 "^softcell-spu-gcc: cannot write ${lab}/nowhere/value: No such file or directory\n$" ${gcc} ${lab}/value.c ${lab}/main_of_archive.c
+  -o ${lab}/nowhere/value)
+
+# What the C library's calls of the PPU side read and write.
+file(WRITE ${lab}/prints.c "#include <spu_mfcio.h>\n#include <stdio.h>\nchar text[128] __attribute__((aligned(128)));\n"
+  "int main(unsigned long long spe, unsigned long long argp) {\n  static unsigned long long ea[2] __attribute__((aligned(16)));\n"
+  "  mfc_write_tag_mask(2);\n  mfc_get(ea, argp, 16, 1, 0, 0);\n  mfc_read_tag_status_all();\n  mfc_get(text, ea[0], 128, 1, 0, 0);\n  if (GETS) printf(\"%s\\n\", text);\n  mfc_read_tag_status_all();\n"
+  "  mfc_put(text, ea[0], 128, 1, 0, 0);\n  if (!GETS) sprintf(text, \"NEW\");\n  mfc_read_tag_status_all();\n  return 0;\n}\n")
+file(WRITE ${lab}/128.bin "FRESH")
+foreach(i RANGE 1 123)
+  file(APPEND ${lab}/128.bin "\n")
+endforeach()
+foreach(gets 1 0)
+  step("a program that prints" ${gcc} -g -DGETS=${gets} ${lab}/prints.c -o ${lab}/prints)
+  set(rule "load-in-flight: load of [0-9]+ bytes? at text")
+  if(NOT gets)
+    set(rule "store-in-flight: store of [0-9]+ bytes? at text")
+  endif()
+  says(3 "${rule} [^\n]*in flight: [a-z]+ of 128 bytes, tag 1, issued at prints.c:" ${BIN}/softcell spu run --checked ${lab}/prints
+    --inout b=${lab}/128.bin --arg @b 0)
+endforeach()
+
 # The names that an SPU's linker gives to the ends of code and data.
 file(WRITE ${lab}/ends.c "extern char __etext, _etext, etext, _edata, edata, __bss_start, _end, end;\n"
   "const int constant = 7; int data = 5, zero[40];\n"

@@ -89,8 +89,7 @@ AssistedCalls::Result AssistedCalls::store_text(std::uint32_t to, std::uint32_t 
                                                 const std::string& text) {
   if (room != 0) {
     const std::size_t length = std::min<std::size_t>(text.size(), room - 1);
-    memory_.set_bytes(to, std::string_view(text).substr(0, length));
-    memory_.set_byte(to + static_cast<std::uint32_t>(length), 0);
+    memory_.set_bytes(to, text.substr(0, length) + '\0');
   }
   return {static_cast<std::int64_t>(text.size()), 0};
 }

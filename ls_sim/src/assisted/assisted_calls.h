@@ -90,8 +90,8 @@ class AssistedCalls {
         memory_(local_store, kind == CallerKind::kSpu ? std::endian::big : std::endian::little),
         kind_(kind) {}
 
-  /// Is told of each byte of the local store that calls change. Empty: nobody.
-  void on_write(std::function<void(std::uint32_t lsa)> listener) { memory_.on_write(std::move(listener)); }
+  /// Is told of what calls read and write in the local store. Empty: nobody.
+  void set_listener(CallMemory::Listener listener) { memory_.set_listener(std::move(listener)); }
 
   /// Serves the call and writes its result over its first argument: the value in word 0, errno in word 3.
   /// @param code     kC99Call or kPosixCall

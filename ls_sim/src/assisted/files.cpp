@@ -52,8 +52,8 @@ class FilesOfProcess final : public Files {
 }  // namespace
 
 Files& files_of_process() {
-  static FilesOfProcess files;
-  return files;
+  static auto* const files = new FilesOfProcess;  // SPEs run until all else of the program has ended
+  return *files;
 }
 
 std::uint32_t Files::add_stream(std::FILE* opened) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <string_view>
 
 #include "call_memory.h"
 
@@ -186,8 +187,8 @@ std::string format_text(const std::string& format, FormatArguments& arguments, C
         memory.set_value(arguments.next_word(), text.size(), integer_bytes(conversion.length));
         continue;
       }
-      static const std::string kKinds = "diuoxXcspaAeEfFgG%";
-      const bool known = conversion.kind != '\0' && kKinds.find(conversion.kind) != std::string::npos;
+      constexpr std::string_view kKinds = "diuoxXcspaAeEfFgG%";
+      const bool known = conversion.kind != '\0' && kKinds.find(conversion.kind) != std::string_view::npos;
       text += known ? convert(conversion, arguments, memory) : format.substr(begin, at - begin);
     }
   }

@@ -210,6 +210,21 @@ void Checker::on_access(const Access& access) {
   mark_unsynced({.lsa = access.lsa.value, .bytes = access.bytes}, access.instruction);
 }
 
+/// What it reads may be more than its caller has written, such as the padding of what fwrite() is given.
+void Checker::on_host_access(dma::LocalStoreAddress lsa, std::uint32_t bytes, bool is_store) {
+  const Access access{.lsa = lsa,
+                      .bytes = bytes,
+                      .is_store = is_store,
+                      .instruction = to_.engine.position(),
+                      .stack_pointer = to_.engine.stack_pointer()};
+  if (is_store) {
+    if (objects_.has_value()) check_store(access);  // else a resident kernel before its first job
+    written_.mark(lsa.value, bytes);
+  } else {
+    check_load_in_flight(access);
+  }
+}
+
 bool Checker::is_written(std::uint32_t lsa, std::uint32_t bytes) {
   if (written_.any(lsa, bytes)) return true;
   if (!is_shared_.load(std::memory_order_relaxed)) return false;
@@ -251,11 +266,16 @@ void Checker::check_store(const Access& access) {
     report(rule, access.instruction, describe(access) + "; in flight: " + describe(*other));
 }
 
+/// @return  whether it breaks the rule.
+bool Checker::check_load_in_flight(const Access& access) {
+  const CommandInFlight* const other = in_flight_.writing(access.lsa.value, access.bytes);
+  if (other == nullptr) return false;
+  report(Rule::kLoadInFlight, access.instruction, describe(access) + "; in flight: " + describe(*other));
+  return true;
+}
+
 void Checker::check_load(const Access& access) {
-  if (const CommandInFlight* const other = in_flight_.writing(access.lsa.value, access.bytes)) {
-    report(Rule::kLoadInFlight, access.instruction, describe(access) + "; in flight: " + describe(*other));
-    return;
-  }
+  if (check_load_in_flight(access)) return;
   // The compiler passes arguments on the stack without telling, and warns of variables that are not set. A
   // load of which some bytes were written takes padding along. Of a program with a heap bytes are followed to where
   // they matter: it stores to part of a quadword by loading it first.

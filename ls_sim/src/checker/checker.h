@@ -94,9 +94,7 @@ class Checker final : public ChannelPort, public AccessObserver {
   void on_access(const Access& access) override;
   void on_instruction(const ExecutedInstruction& instruction) override;
   UndefinedBits undefined_bits(dma::LocalStoreAddress quadword) override;
-  void on_host_write(dma::LocalStoreAddress lsa, std::uint32_t bytes) override {
-    written_.mark(lsa.value, bytes);
-  }
+  void on_host_access(dma::LocalStoreAddress lsa, std::uint32_t bytes, bool is_store) override;
 
  private:
   using Address = dma::LocalStoreAddress;
@@ -146,6 +144,7 @@ class Checker final : public ChannelPort, public AccessObserver {
 
   void report(dma::Rule rule, Address place, std::string detail,
               const std::optional<dma::MfcCommand>& command = std::nullopt);
+  bool check_load_in_flight(const Access& access);
   std::string describe(const Access& access) const;
   std::string describe(const CommandInFlight& command) const;
   bool runs_spu_program() const { return image_ != nullptr && image_->machine == Machine::kSpu; }

@@ -91,6 +91,7 @@ RunResult Spe::run(const Run& run) {
   });
   if (accounting.fault && !result.fault) result = std::move(accounting);
   if (job_) result.job = job_->ea;
+  end_is_wanted_ = false;
   // Whatever a kernel that failed did to its local store goes with it.
   if (result.fault || options_.reload_always) resident_ = nullptr;
   job_.reset();
@@ -274,7 +275,9 @@ void Spe::count_job(const KernelImage& image, std::uint64_t number, SpeMonitor::
 
 void Spe::account(const Run& run, const RunResult& result) {
   const bool succeeded = result.ended_normally() && result.status() == 0;
-  const bool failed = options_.status_says_failure ? !succeeded : result.fault.has_value();
+  const bool is_fault =
+      result.fault && !(end_is_wanted_ && result.fault->rule == dma::Rule::kDeadlineExceeded);
+  const bool failed = options_.status_says_failure ? !succeeded : is_fault;
   if (!run.resident) count_job(*run.image, run.number, run.begin, run_begin_, failed);
   if (run.resident && job_)
     count_job(image_under_way(), statistics_.jobs, job_->begin, job_->trace_begin, true);
@@ -290,12 +293,13 @@ void Spe::account(const Run& run, const RunResult& result) {
   }
   statistics_.local_store_high_water =
       std::max(statistics_.local_store_high_water, sizes.end - sizes.from + stack);
-  if (trace_ != nullptr && result.fault) {
+  if (trace_ != nullptr && is_fault) {
     trace_->on_finding(*result.fault, trace_time());
   }
 }
 
-void Spe::interrupt() {
+void Spe::interrupt(Interrupt why) {
+  if (why == Interrupt::kWanted) end_is_wanted_ = true;
   monitor_.stop(number_);
   engine_->interrupt();
 }

@@ -1,6 +1,7 @@
 #pragma once
 // One SPE: local store, MFC, channels, engine.
 
+#include <atomic>
 #include <map>
 #include <memory>
 #include <optional>
@@ -66,8 +67,11 @@ class Spe final : public dma::LocalStorePort, private dma::ReservationListener, 
   /// Loads an image if it is not loaded, and runs it to its end. @pre SpeMonitor::start() was called
   RunResult run(const Run& run);
 
-  /// Ends the run in progress with the fault deadline-exceeded. Any thread, with the monitor's lock.
-  void interrupt();
+  /// Why a run is to end: because it is late, which is a mistake of its kernel, or because the PPU side wants it.
+  enum class Interrupt : std::uint8_t { kLate, kWanted };
+  /// Ends the run in progress with the fault deadline-exceeded; the trace shows one that is late only. Any thread, with
+  /// the monitor's lock.
+  void interrupt(Interrupt why);
 
   /// Of its engine. Any thread, while no run is in progress.
   dma::LocalStoreAddress position() const { return engine_->position(); }
@@ -165,6 +169,7 @@ class Spe final : public dma::LocalStorePort, private dma::ReservationListener, 
   const Run* run_ = nullptr;
   std::optional<InnerJob> job_;
   TraceTime run_begin_ = 0;
+  std::atomic<bool> end_is_wanted_{false};  ///< of the run in progress
 };
 
 }  // namespace softcell::ls_sim

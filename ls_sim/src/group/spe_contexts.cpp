@@ -107,7 +107,7 @@ void SpeContexts::State::watch() {
     for (int number = 0; number < options.spes; ++number) {
       Spe* const spe = slots[static_cast<std::size_t>(number)].spe;
       if (spe != nullptr && monitor.runs(number) && monitor.is_late(number, now, options.deadline))
-        spe->interrupt();
+        spe->interrupt(Spe::Interrupt::kLate);
     }
   }
 }
@@ -236,7 +236,7 @@ class Context final : public SpeContext, private StopListener {
 
   void interrupt() override {
     const SpeMonitor::Lock lock = monitor_.lock();
-    if (phase_ == Phase::kRunning) spe_.interrupt();
+    if (phase_ == Phase::kRunning) spe_.interrupt(Spe::Interrupt::kWanted);
   }
 
   ProblemState& problem_state() override { return door_; }
@@ -290,7 +290,7 @@ class Context final : public SpeContext, private StopListener {
       SpeMonitor::Lock& lock;
       ~End() {
         if (context.phase_ != Phase::kRunning) return;
-        context.spe_.interrupt();
+        context.spe_.interrupt(Spe::Interrupt::kWanted);
         context.stopped_.wait(lock, [&] { return context.phase_ != Phase::kRunning; });
       }
     };
@@ -415,7 +415,7 @@ void SpeContexts::interrupt_all() {
   const SpeMonitor::Lock lock = state_->monitor.lock();
   for (int number = 0; number < state_->options.spes; ++number) {
     Spe* const spe = state_->slots[static_cast<std::size_t>(number)].spe;
-    if (spe != nullptr && state_->monitor.runs(number)) spe->interrupt();
+    if (spe != nullptr && state_->monitor.runs(number)) spe->interrupt(Spe::Interrupt::kWanted);
   }
 }
 

@@ -137,7 +137,7 @@ void SpeThreads::watch() {
     const auto now = std::chrono::steady_clock::now();
     for (int number = 0; number < options_.spes; ++number) {
       const bool late = stops_runs_ || monitor_.is_late(number, now, options_.deadline);
-      if (late && monitor_.runs(number)) spe(number).interrupt();
+      if (late && monitor_.runs(number)) spe(number).interrupt(Spe::Interrupt::kLate);
     }
   }
 }

@@ -186,11 +186,13 @@ RunResult InterpreterEngine::run(const EntryArguments& arguments, ChannelPort& c
   std::optional<Checks> checks;
   if (accesses != nullptr) checks.emplace(Checks{*accesses, UndefinedValues(arguments.entry_state)});
   if (calls_ != nullptr && accesses != nullptr)
-    calls_->on_write([accesses](std::uint32_t lsa) { accesses->on_host_write({lsa}, 1); });
+    calls_->set_listener([accesses](std::uint32_t lsa, std::uint32_t bytes, bool is_store) {
+      accesses->on_host_access({lsa}, bytes, is_store);
+    });
   do {
     execute(core, checks ? &*checks : nullptr, job_calls);
   } while (serve_call(core));
-  if (calls_ != nullptr) calls_->on_write({});
+  if (calls_ != nullptr) calls_->set_listener({});
   if (issue_model_ != nullptr) issue_model_->bring_clock();
   if (debugger_ != nullptr) debugger_->on_end(spe_);
   if (files_ != nullptr) files_->close_all();

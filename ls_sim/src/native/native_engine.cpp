@@ -349,7 +349,9 @@ std::optional<RunResult> NativeEngine::answer() {
       assisted::AssistedCalls calls(assisted::files_of_process(), local_store_.bytes(),
                                     assisted::CallerKind::kHost);
       if (accesses_ != nullptr)
-        calls.on_write([this](std::uint32_t lsa) { accesses_->on_host_write({lsa}, 1); });
+        calls.set_listener([this](std::uint32_t lsa, std::uint32_t bytes, bool is_store) {
+          accesses_->on_host_access({lsa}, bytes, is_store);
+        });
       context_.reply = calls.serve(code, context_.value);
       return std::nullopt;
     }

@@ -508,7 +508,7 @@ double arc_tangent(double x) {
   return with_sign_of(base + t * series, x);
 }
 double arc_tangent_of(double y, double x) {
-  if (x == 0 && y == 0) return 0;
+  if (x == 0 && y == 0) return with_sign_of(with_sign_of(1, x) < 0 ? kPi : 0, y);
   if (size_of(y) > size_of(x)) return with_sign_of(kPi / 2, y) - arc_tangent(x / y);
   const double angle = arc_tangent(y / x);
   return x > 0 ? angle : angle + with_sign_of(kPi, y);

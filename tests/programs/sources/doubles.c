@@ -46,6 +46,8 @@ static void floats(void) {
   CHECK(fma(x, x, -1 - 0x1p-27) == 0x1p-56 && fma(3, 4, -12) == 0);
   CHECK(fmaf(3, 4, -12) == 0 && fmaf(0x1.000002p0f, 0x1.000002p0f, -1) == 0x1p-22f);
   CHECK(fminf(1, 2) == 1 && fmaxf(1, 2) == 2 && fdimf(5, 2) == 3 && copysignf(2, -1) == -2 && remainderf(5, 3) == -1);
+  CHECK(near(atan2(0.0, -0.0), M_PI) && near(atan2(-0.0, -0.0), -M_PI) && fabs(atan2f(-0.0f, -0.0f) + M_PI) < 1e-6);
+  CHECK(signbit(atan2(-0.0, 0.0)) != 0 && signbit(atan2(0.0, 0.0)) == 0);
   CHECK(fmodf(5.5f, -2) == 1.5f && powf(2, 10) == 1024 && atan2f(0, 0) == 0 && hypotf(6, 8) == 10);
   CHECK(sqrtf(-1) == 0 && logf(-1) == 0 && logf(0) == -HUGE_VALF && asinf(2) == 0 && expf(100) == HUGE_VALF && expf(-100) == 0);
   CHECK(isfinite(one) != 0 && isfinite(endless) == 0 && isnan(none) != 0 && isinf(-endless) != 0 && signbit(-one) != 0);

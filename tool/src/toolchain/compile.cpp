@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <fstream>
 #include <iostream>
+#include <sstream>
 #include <stdexcept>
 #include <string_view>
 
@@ -42,13 +43,24 @@ bool has(const Words& words, std::string_view option) {
   return std::ranges::any_of(words, [&](const std::string& word) { return word.starts_with(option); });
 }
 
-/// The preprocessor's options. Dependencies that it writes name the object.
-Words preprocessor_options(const Options& options, const std::filesystem::path& object) {
+bool has_dependencies(const Words& words) { return has(words, "-MD") || has(words, "-MMD"); }
+
+/// The file that the dependencies go to: that of -MF, else one beside what they are of.
+std::filesystem::path dependency_file(const Words& words, const std::filesystem::path& dependent) {
+  constexpr std::string_view kOption = "-MF";
+  const auto found =
+      std::ranges::find_if(words, [&](const std::string& word) { return word.starts_with(kOption); });
+  if (found == words.end()) return std::filesystem::path(dependent).replace_extension(".d");
+  if (found->size() > kOption.size()) return found->substr(kOption.size());
+  return found + 1 == words.end() ? "" : *(found + 1);
+}
+
+/// The preprocessor's options.
+Words preprocessor_options(const Options& options, const std::filesystem::path& dependent) {
   Words words = options.preprocessor;
-  if (!has(words, "-MD") && !has(words, "-MMD")) return words;
-  if (!has(words, "-MF"))
-    append(words, {"-MF", std::filesystem::path(object).replace_extension(".d").string()});
-  if (!has(words, "-MT") && !has(words, "-MQ")) append(words, {"-MT", object.string()});
+  if (!has_dependencies(words)) return words;
+  if (!has(words, "-MF")) append(words, {"-MF", dependency_file(words, dependent).string()});
+  if (!has(words, "-MT") && !has(words, "-MQ")) append(words, {"-MQ", dependent.string()});
   return words;
 }
 
@@ -140,9 +152,20 @@ void keep_standard_input(const Options& options, ScratchFolder& scratch) {
   close(file);
 }
 
-void compile(const Input& source, const std::filesystem::path& object, const Options& options,
-             const Places& places, ScratchFolder& scratch) {
-  compile_flavour(source, object, false, preprocessor_options(options, object), options, places, scratch);
+void Dependencies::join(const Options& options, const std::filesystem::path& dependent) {
+  if (!has_dependencies(options.preprocessor)) return;
+  const std::filesystem::path file = dependency_file(options.preprocessor, dependent);
+  if (!std::filesystem::is_regular_file(file)) return;  // standard output, for example
+  std::ostringstream of_one;
+  of_one << std::ifstream(file, std::ios::binary).rdbuf();
+  std::string& rules = rules_[file];
+  rules += of_one.str();
+  std::ofstream(file, std::ios::binary) << rules;
+}
+
+void compile(const Input& source, const std::filesystem::path& object, const std::filesystem::path& dependent,
+             const Options& options, const Places& places, ScratchFolder& scratch) {
+  compile_flavour(source, object, false, preprocessor_options(options, dependent), options, places, scratch);
   const auto checked = scratch.file("checked.o");
   compile_flavour(source, checked, true, without_dependencies(options.preprocessor), options, places,
                   scratch);

@@ -3,6 +3,7 @@
 // store, is in its section .softcell.checked.
 
 #include <filesystem>
+#include <map>
 #include <string>
 
 #include "options.h"
@@ -16,9 +17,20 @@ inline constexpr const char kCheckedSection[] = ".softcell.checked";
 /// Standard input is read once; both flavours are compiled from what was read. Call it before compile().
 void keep_standard_input(const Options& options, ScratchFolder& scratch);
 
-/// Compiles one source. @throws Failed  the compiler has printed why.
-void compile(const Input& source, const std::filesystem::path& object, const Options& options,
-             const Places& places, ScratchFolder& scratch);
+/// Compiles one source. @param dependent  what the dependencies of -MD are of: the object, or the program of which it becomes a part.
+/// @throws Failed  the compiler has printed why.
+void compile(const Input& source, const std::filesystem::path& object, const std::filesystem::path& dependent,
+             const Options& options, const Places& places, ScratchFolder& scratch);
+
+/// The files that -MD writes: the compiler writes one for each source, also where the sources of a call have the same.
+class Dependencies {
+ public:
+  /// Puts what the earlier sources depend on back before what compile() has written last.
+  void join(const Options& options, const std::filesystem::path& dependent);
+
+ private:
+  std::map<std::filesystem::path, std::string> rules_;
+};
 
 /// -E and -M: runs the preprocessor on the sources.
 void preprocess(const Options& options, const Places& places);

@@ -186,7 +186,9 @@ void link(const Words& files, const std::filesystem::path& output, const Options
   const auto name = scratch.file("name");
   std::ofstream(name) << output.stem().string();
   add_section(whole, ".softcell.name", name);
-  std::filesystem::copy_file(whole, output, std::filesystem::copy_options::overwrite_existing);
+  std::error_code error;
+  std::filesystem::copy_file(whole, output, std::filesystem::copy_options::overwrite_existing, error);
+  if (error) throw std::runtime_error("cannot write " + output.string() + ": " + error.message());
   std::filesystem::permissions(output, std::filesystem::status(whole).permissions());
 }
 

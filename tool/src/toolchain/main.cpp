@@ -71,6 +71,7 @@ int gcc(const std::string& command, const Words& words, Language language) {
   ScratchFolder scratch;
   keep_standard_input(options, scratch);
   Words files;
+  Dependencies dependencies;
   for (const Input& input : options.inputs) {
     if (!input.language) {
       files.push_back(input.file);
@@ -80,7 +81,11 @@ int gcc(const std::string& command, const Words& words, Language language) {
     const bool keeps = options.step == Step::kCompile && !options.relocatable;
     const std::filesystem::path object =
         keeps ? std::filesystem::path(options.output.value_or(stem)) : scratch.file(stem);
-    compile(input, object, options, places, scratch);
+    // Who links at once knows of no object.
+    const std::filesystem::path dependent =
+        keeps ? object : std::filesystem::path(options.output.value_or(stem));
+    compile(input, object, dependent, options, places, scratch);
+    dependencies.join(options, dependent);
     files.push_back(object);
   }
   if (options.step == Step::kCheck) return 0;

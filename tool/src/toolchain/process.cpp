@@ -95,7 +95,10 @@ void become(const Words& command) {
 }
 
 ScratchFolder::ScratchFolder() {
-  std::string name = std::filesystem::temp_directory_path() / "softcell-spu-XXXXXX";
+  std::error_code none;
+  std::filesystem::path folder = std::filesystem::temp_directory_path(none);
+  if (none) folder = "/tmp";  // TMPDIR names no folder, which GCC does not mind either
+  std::string name = folder / "softcell-spu-XXXXXX";
   if (mkdtemp(name.data()) == nullptr)
     throw std::runtime_error("cannot make the temporary folder " + name + ": " + std::strerror(errno));
   path_ = name;

@@ -101,8 +101,9 @@ class AccessObserver {
  public:
   virtual ~AccessObserver() = default;
   virtual void on_access(const Access& access) = 0;
-  /// The host has written to this range, in a call that it serves.
-  virtual void on_host_write(dma::LocalStoreAddress, std::uint32_t) {}
+  /// The host reads or writes this range in a call that it serves, such as one of the C library's printf().
+  virtual void on_host_access(dma::LocalStoreAddress, [[maybe_unused]] std::uint32_t bytes,
+                              [[maybe_unused]] bool is_store) {}
 
   // Only for programs for the SPU:
 
