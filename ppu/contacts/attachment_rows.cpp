@@ -703,10 +703,13 @@ auto AttachmentRows<kDimension>::spin_of_pushes() const -> Axial {
   return size > most ? Axial(most / size * sum) : sum;
 }
 
-/// Ends that are a body's length apart, as after a teleport, have a lever with which small patches would be thrown about.
+/// Ends on a rigid body that are a body's length apart, as after a teleport, have a lever with which small patches would be thrown about.
+/// Compliance lets ends come apart, and as much more as it makes a row softer.
 template <int kDimension>
-double AttachmentRows<kDimension>::share_taken_back(const Vector& apart) const {
-  const double limit = double{kMostApartInCells} * double{sides_.a.spacing};
+double AttachmentRows<kDimension>::share_taken_back(const Row& row, const Vector& apart) const {
+  if (sides_.b != nullptr) return 1;
+  const double softer = softness_ > 0 ? 1 + double{softness_} / double{row.push_mobility} : 1;
+  const double limit = softer * double{kMostApartInCells} * double{sides_.a.spacing};
   const double squared = apart.template cast<double>().squaredNorm();
   return squared > limit * limit ? limit * limit / squared : 1;
 }
@@ -720,8 +723,8 @@ void AttachmentRows<kDimension>::take_back_spin(bool is_alone) {
   if (softness_ > 0 || is_alone)
     for (const Row& row : rows_) {
       const Vector apart = a_.of(row.a, sides_.a.positions) - row.point;
-      given += share_taken_back(apart) * turning::cross(apart.template cast<double>().eval(),
-                                                        row.impulse.template cast<double>().eval());
+      given += share_taken_back(row, apart) * turning::cross(apart.template cast<double>().eval(),
+                                                             row.impulse.template cast<double>().eval());
     }
   if (pushes_soft_body_only() && is_alone) given += spin_of_pushes();
   TurnedPatches<kDimension> patches;

@@ -148,7 +148,6 @@ class AttachmentRows {
   using Axial = turning::Axial<kDimension>;
   bool pushes_soft_body_only() const;
   Axial spin_of_pushes() const;
-  double share_taken_back(const Vector& apart) const;
   struct Side {
     std::vector<std::uint32_t> particle;
     std::vector<float> share;
@@ -189,6 +188,7 @@ class AttachmentRows {
     float push_most = 0;  // m/s
     float push = 0;       // kg m/s
   };
+  double share_taken_back(const Row& row, const Vector& apart) const;
 
   void add_row(const Vector& point, const PatchParticles<kDimension>& a, const PatchParticles<kDimension>* b,
                const AttachmentFrame<kDimension>* frame);
