@@ -26,7 +26,7 @@ class KnownModels {
     known_.try_emplace(model, std::move(known));
   }
 
-  /// Tells that a body has gone or has another model now. Frees what is kept of its model, if that is unused, and after a piece also what is
+  /// Tells that a body has gone or has another model now. Frees what is kept of its model if that is unused, and after a piece also what is
   /// kept of the whole. The time does not depend on the number of models.
   /// @param model   that the body had; need not exist any longer  @param before  called with each before it is freed
   template <typename Before>
