@@ -105,7 +105,8 @@ TEST(LsSimContractsDeathTest, JobsBeginAndEndInsideARun) {
 TEST(LsSimContractsDeathTest, ThePpuWaitsForSomething) {
   SpeMonitor monitor{SpeOptions{}};
   SpeMonitor::Lock lock = monitor.lock();
-  SC_EXPECT_VIOLATES(monitor.ppu_wait(lock, nullptr), "ppu_wait.*: the PPU side waits for nothing, with 0");
+  SC_EXPECT_VIOLATES(monitor.ppu_wait(lock, nullptr),
+                     "ppu_wait.*: the PPU side.s wait has no condition; 0 others wait");
 }
 
 TEST(LsSimContractsDeathTest, CommandsInFlightHaveTags) {
