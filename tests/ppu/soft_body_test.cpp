@@ -30,16 +30,21 @@ TEST(SoftBody, ATimeStepIsAboveZero) {
     EXPECT_THROW(body.pull(step), std::invalid_argument) << step;
 }
 
+/// The message of a refusal, or "accepted".
+std::string verdict_on(const SoftBodySettings& settings) {
+  try {
+    validate(settings);
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
 TEST(SoftBodySettings, RefuseValuesOutOfTheirRangeByName) {
-  const auto sentence = [](const std::function<void(SoftBodySettings&)>& change) -> std::string {
+  const auto sentence = [](const std::function<void(SoftBodySettings&)>& change) {
     SoftBodySettings settings = rubber();
     change(settings);
-    try {
-      validate(settings);
-    } catch (const std::runtime_error& error) {
-      return error.what();
-    }
-    return "accepted";
+    return verdict_on(settings);
   };
   constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
   EXPECT_EQ(sentence([](auto&) {}), "accepted");
@@ -58,17 +63,12 @@ TEST(SoftBodySettings, RefuseValuesOutOfTheirRangeByName) {
 
 /// A message names no number that looks as if it were in the range.
 TEST(SoftBodySettings, RefuseTheNextNumberBeyondALimitInAllItsDigits) {
-  const auto sentence = [](const std::function<void(SoftBodySettings&)>& change) -> std::string {
+  const auto sentence = [](const std::function<void(SoftBodySettings&)>& change) {
     SoftBodySettings settings = rubber();
     settings.plasticity = Plasticity{};
     settings.fracture = Fracture{};
     change(settings);
-    try {
-      validate(settings);
-    } catch (const std::runtime_error& error) {
-      return error.what();
-    }
-    return "accepted";
+    return verdict_on(settings);
   };
   const float above = std::nextafter(1.0f, 2.0f), below = -std::numeric_limits<float>::denorm_min();
   const float turn = std::nextafter(3.1415927f, 4.0f);
