@@ -198,14 +198,14 @@ void SurfaceContacts2d::wake_those_in_the_way(Bodies bodies) {
 
 void SurfaceContacts2d::step(Bodies bodies, Box2dAttachments& attachments, float step) {
   if (bodies.empty()) {
-    forget_unused();
+    models_.forget_unused();
     return obstacles_.forget_places();
   }
   SC_ASSERT(step > 0 && !world_.IsLocked(), "contacts of {} s within a step of Box2D, or of none", step);
   obstacles_.begin(world_, step, largest_cell(bodies));
   begin_attachments(bodies, attachments, step);
   begin(bodies, attachments, step);
-  forget_unused();
+  models_.forget_unused();  // now each body holds what it uses
   wake_those_in_the_way(bodies);
   stage_.settings.bounces = {
       .least_speed = 1,  // Box2D's threshold for restitution
@@ -394,19 +394,6 @@ void SurfaceContacts2d::shift(const Vector2f& by) {
     for (std::vector<Support>* const known : {&kept.supports, &kept.seen})
       for (Support& support : *known) support.pose.p += to_box2d(by);
   }
-}
-
-void SurfaceContacts2d::forget_model(const SoftBodyModel<2>* model) {
-  models_.forget(model, [&](const Model& known) {
-    if (worker_) worker_->forget(known.contact);
-  });
-}
-
-/// @pre all bodies have been in a step, or there are none
-void SurfaceContacts2d::forget_unused() {
-  models_.forget_unused([&](const Model& known) {
-    if (worker_) worker_->forget(known.contact);
-  });
 }
 
 }  // namespace softcell::ppu

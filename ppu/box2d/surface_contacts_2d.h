@@ -93,7 +93,7 @@ class SurfaceContacts2d {
   /// Tells that a body has gone or has another model now. Frees what is kept of a model that no body has any longer, if it is a piece's or
   /// nobody else holds the model: now, or in a step soon.
   /// @param model  that the body had; need not exist any longer  @pre between steps
-  void forget_model(const SoftBodyModel<2>* model);
+  void forget_model(const SoftBodyModel<2>* model) { models_.forget(model); }
 
  private:
   /// A rigid body as it was when a soft one fell asleep on it, or when a sleeper near it first saw it.
@@ -119,7 +119,6 @@ class SurfaceContacts2d {
 
   const std::shared_ptr<const Model>& model_of(const std::shared_ptr<const SoftBodyModel<2>>& model);
   void forget_contacts(const Box2dBody& body);
-  void forget_unused();
   void lift(const Box2dBody& body, Kept& kept, float step);
   void begin(Bodies bodies, const Box2dAttachments& attachments, float step);
   void begin_attachments(Bodies bodies, Box2dAttachments& attachments, float step);
@@ -137,7 +136,9 @@ class SurfaceContacts2d {
 
   b2World& world_;
   std::shared_ptr<ContactWorker> worker_;
-  KnownModels<2, Model> models_;
+  KnownModels<2, Model> models_{[this](const Model& known) {
+    if (worker_) worker_->forget(known.contact);
+  }};
   std::unordered_map<const Box2dBody*, Kept> kept_;
   Box2dObstacles obstacles_{Box2dObstacles::Fixtures::kSolid};
   Box2dLinks links_;

@@ -64,12 +64,13 @@ Vector3f farthest(const std::vector<btVector3>& points, const Vector3f& from, co
 
 /// Points in one plane or on one line have no inside out of which something could be pushed: each is replaced by two or four, on both
 /// sides. Points that all coincide stay as they are.
-void give_volume(std::vector<btVector3>& points) {
-  if (points.empty()) return;
+/// @return  whether any point was replaced
+bool give_volume(std::vector<btVector3>& points) {
+  if (points.empty()) return false;
   const Vector3f origin = to_eigen(points.front());
   const Vector3f along = farthest(points, origin, [](const Vector3f& d) { return d; });
   const float length = along.norm();
-  if (!(length > 0)) return;
+  if (!(length > 0)) return false;
   const Vector3f x = along / length;
   const Vector3f across =
       farthest(points, origin, [&](const Vector3f& d) { return Vector3f(d - d.dot(x) * x); });
@@ -84,8 +85,10 @@ void give_volume(std::vector<btVector3>& points) {
     }
   };
   const Vector3f out = farthest(points, origin, [&](const Vector3f& d) { return Vector3f(d.dot(z) * z); });
+  const bool is_flat = is_line || out.norm() < kNoLength * length;
   if (is_line) widen(y);
-  if (is_line || out.norm() < kNoLength * length) widen(z);
+  if (is_flat) widen(z);
+  return is_flat;
 }
 
 /// Collects the corners of a mesh's triangles.
@@ -180,14 +183,15 @@ void ConvexHull::follow(const btConvexShape& shape) {
   };
   constexpr std::size_t kMany = 1000;
   const float tolerance = is_polyhedron ? 0 : kTolerance * half_length(points_);
+  if (is_polyhedron) give_volume(points_);
+  make();
   while (!is_polyhedron && points_.size() < kMany) {
-    make();
     const std::vector<btVector3> more = points_beyond(shape, planes_, tolerance);
     if (more.empty()) break;
     points_.insert(points_.end(), more.begin(), more.end());
+    make();
   }
-  give_volume(points_);
-  make();
+  if (!is_polyhedron && give_volume(points_)) make();
   edges_.clear();
   add_edges_of_hull(edges, planes_, edges_);
 }

@@ -39,18 +39,6 @@ const std::shared_ptr<const ContactModel>& SurfaceContacts::contact_model(
 
 void SurfaceContacts::adopt(std::unique_ptr<ContactModel> contact) { models_.adopt(std::move(contact)); }
 
-void SurfaceContacts::forget_model(const SoftBodyModel<3>* model) {
-  models_.forget(model, [&](const ContactModel& contact) {
-    if (worker_) worker_->forget(contact);
-  });
-}
-
-void SurfaceContacts::forget_unused() {
-  models_.forget_unused([&](const ContactModel& contact) {
-    if (worker_) worker_->forget(contact);
-  });
-}
-
 template <typename Is>
 bool SurfaceContacts::any_near(const BodyInStage& body, const Is& is) const {
   return std::any_of(body.obstacles.begin(), body.obstacles.end(), [&](std::uint32_t obstacle) {
@@ -97,7 +85,7 @@ void SurfaceContacts::see_what_is_near(SurfaceBody& sleeper, const BodyInStage& 
 }
 
 void SurfaceContacts::step(std::span<SurfaceBody* const> bodies, float step) {
-  forget_unused();
+  models_.forget_unused();
   obstacles_.begin(world_, step);
   if (!attachments_.empty()) attachments_.begin();
   in_stage_.resize(bodies.size());

@@ -38,7 +38,7 @@ class SurfaceContacts {
   /// Tells that a body has gone or has another model now. Frees what is kept of a model that no body has any longer, if it is a piece's or
   /// nobody else holds the model: now, or in a substep soon.
   /// @param model  that the body had; need not exist any longer  @pre between substeps
-  void forget_model(const SoftBodyModel<3>* model);
+  void forget_model(const SoftBodyModel<3>* model) { models_.forget(model); }
 
   /// Finds and solves the contacts of the substep that begins, moves all particles of bodies that are awake, and gives rigid bodies their
   /// impulses. Wakes bodies that are touched.
@@ -64,7 +64,6 @@ class SurfaceContacts {
  private:
   using Touch = TouchLog<ContactEvent>::Touch;
 
-  void forget_unused();
   void move(std::span<SurfaceBody* const> bodies, float step);
   void wake_those_in_the_way(std::span<SurfaceBody* const> bodies);
   void find_at_rest(std::span<SurfaceBody* const> bodies);
@@ -79,7 +78,9 @@ class SurfaceContacts {
 
   btDiscreteDynamicsWorld& world_;
   std::shared_ptr<ContactWorker> worker_;
-  KnownModels<3, ContactModel> models_;
+  KnownModels<3, ContactModel> models_{[this](const ContactModel& contact) {
+    if (worker_) worker_->forget(contact);
+  }};
   BulletObstacles obstacles_{BulletObstacles::Objects::kSolid};
   BulletLinks links_;
   SurfaceAttachments attachments_{world_};

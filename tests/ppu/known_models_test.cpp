@@ -34,14 +34,14 @@ class KnownModelsTest : public testing::Test {
   }
   /// @return  the number that it has freed
   int forget(const SoftBodyModel<3>* model) {
-    int freed = 0;
-    models_.forget(model, [&](const Kept&) { ++freed; });
-    return freed;
+    freed_ = 0;
+    models_.forget(model);
+    return freed_;
   }
   int freed_in(int steps) {
-    int freed = 0;
-    for (int i = 0; i < steps; ++i) models_.forget_unused([&](const Kept&) { ++freed; });
-    return freed;
+    freed_ = 0;
+    for (int i = 0; i < steps; ++i) models_.forget_unused();
+    return freed_;
   }
 
   static Model cube() {
@@ -58,7 +58,8 @@ class KnownModelsTest : public testing::Test {
     return halves;
   }
 
-  KnownModels<3, Kept> models_;
+  int freed_ = 0;
+  KnownModels<3, Kept> models_{[this](const Kept&) { ++freed_; }};
 };
 
 TEST_F(KnownModelsTest, ABodyThatUsesAModelKeepsIt) {
