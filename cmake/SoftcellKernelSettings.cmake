@@ -113,7 +113,7 @@ set(SOFTCELL_SPU_CHECK_FLAGS
   # stdint.h and stddef.h come from sdk/check; a local store has no other library.
   -nostdinc -I ${SOFTCELL_SDK_DIR}/check -I ${SOFTCELL_SDK_DIR}/..)
 
-# What the checked flavour is compiled with: a call before each load and store, to spu_kernels/sdk/checked. Why which compiler gets
+# What checked images are compiled with: a call before each load and store, to spu_kernels/sdk/checked. Why which compiler gets
 # which is written there.
 set(SOFTCELL_CHECKED_FLAGS -DSOFTCELL_CHECKED)  # a kernel that fills the local store has to make do with less of it then
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")

@@ -4,7 +4,7 @@
 # Builds one SPU kernel for the host: freestanding objects, linked on their own at local-store address 0 into
 # <binary dir>/<name>.spu.elf. The build fails when the image leaves no room for its stack, holds a relocation, or passes its
 # budget (image and stack together). Target <name>_image depends on the file; its property SOFTCELL_IMAGE is the path.
-# The same sources make the checked flavour, <name>.checked.spu.elf (target <name>_checked_image), which reports every load and store to
+# The same sources make the checked image, <name>.checked.spu.elf (target <name>_checked_image), which reports every load and store to
 # the emulator. It is larger: all of the local store is its budget. UNCHECKED_ONLY leaves it out, for a kernel that then does not fit.
 # A PROGRAM is loaded whole and is no job: it may have pointers in its static data, static constructors, exit(), and functions of the C
 # library (spu_kernels/sdk/library), of which the image holds what it uses. With a source in C (*.c: GNU C17) it is one anyway. OPTIONS
@@ -26,7 +26,7 @@ if(NOT SOFTCELL_KERNEL_LINKER)
   message(FATAL_ERROR "softcell: GNU ld (ld.bfd), which links SPU kernels, was not found; on Debian it is in the package binutils.")
 endif()
 
-# The objects of one flavour of a kernel.
+# The objects of one build of a kernel.
 function(softcell_compile_spu_sources target)
   cmake_parse_arguments(arg "WARNINGS_AS_ERRORS;PROGRAM" "HEADERS" "SOURCES;INCLUDES;OPTIONS" ${ARGN})
   include(${CMAKE_CURRENT_FUNCTION_LIST_DIR}/SoftcellKernelSettings.cmake)
@@ -141,11 +141,11 @@ endfunction()
 macro(softcell_add_spu_program name c_sources)
   set(cpp_sources ${arg_SOURCES})
   list(FILTER cpp_sources EXCLUDE REGEX "\\.c$")
-  set(flavours plain)
+  set(builds plain)
   if(NOT arg_UNCHECKED_ONLY)
-    list(APPEND flavours checked)
+    list(APPEND builds checked)
   endif()
-  foreach(flavour IN LISTS flavours)
+  foreach(build IN LISTS builds)
     set(suffix)
     set(checked 0)
     set(c_flags)
@@ -154,7 +154,7 @@ macro(softcell_add_spu_program name c_sources)
     set(stack ${arg_STACK_BYTES})
     set(budget ${arg_BUDGET_BYTES})
     set(image ${CMAKE_CURRENT_BINARY_DIR}/${name}.spu.elf)
-    if(flavour STREQUAL "checked")
+    if(build STREQUAL "checked")
       set(suffix _checked)
       set(checked 1)
       set(c_flags ${SOFTCELL_C_CHECKED_FLAGS})
@@ -267,7 +267,7 @@ endfunction()
 
 # softcell_embed_spu_images(<library> <kernel>...)
 # Puts the images into a static library as read-only data: extern "C" const unsigned char softcell_image_<kernel>[] and
-# softcell_image_<kernel>_end[]; their checked flavours likewise, as softcell_image_<kernel>_checked, and with SOFTCELL_SPU_CXX their
+# softcell_image_<kernel>_end[]; their checked images likewise, as softcell_image_<kernel>_checked, and with SOFTCELL_SPU_CXX their
 # executables for the SPU, as softcell_image_<kernel>_spu.
 function(softcell_embed_spu_images library)
   if(NOT DEFINED CMAKE_ASM_COMPILE_OBJECT)  # set in a folder where the language is enabled
@@ -291,7 +291,7 @@ function(softcell_embed_spu_images library)
 endfunction()
 
 # softcell_embed_spu_program(<target> <symbol> <kernel>)
-# Puts a kernel and its checked flavour into a program or library, as `extern spe_program_handle_t <symbol>` of libspe2.
+# Puts a kernel and its checked image into a program or library, as `extern spe_program_handle_t <symbol>` of libspe2.
 function(softcell_embed_spu_program target symbol kernel)
   if(NOT DEFINED CMAKE_ASM_COMPILE_OBJECT)
     message(FATAL_ERROR

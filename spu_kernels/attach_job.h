@@ -50,10 +50,11 @@ struct alignas(16) AttachLink {
   /// masses, and the inverse of what is left of the inertia.
   float arms[3], inverse_sum;
   float inverse_inertia[3][4];
-  float inverse[4][4];  ///< kg, of kAttachPlaces: what an error of velocity at one place asks of another one
+  float inverse[4][4];  ///< kg, row i, column j: impulse at place i for each m/s of error at place j
   float inverse_of_pushes[4][4];
   uint32_t broke;  ///< changed: not 0: it would have carried more in the last iteration
-  uint32_t once;   ///< not 0: it is solved in the first iteration only, as no other link changes its sides
+  uint32_t
+      once;  ///< not 0: the kernel solves it in the first iteration only, as no other link changes its sides
   uint32_t pad[2];
 };
 static_assert(sizeof(AttachLink) == 256, "sixteen quadwords");
@@ -101,8 +102,8 @@ struct alignas(16) AttachEntry {
 };
 static_assert(sizeof(AttachEntry) == 48, "three quadwords");
 
-/// Attachments, one after the other, over and over; they need not have anything in common. No two jobs that run at the same time may share a rigid body, or a soft one that is
-/// not asleep.
+/// Attachments that the kernel solves in their order, over and over, up to `iterations` times. They may be independent of each other. No
+/// two jobs that run at the same time may share a rigid body, or a soft one that is not asleep.
 struct alignas(128) AttachJob {
   uint64_t runs_ea;     ///< run_count AttachRun; this and the next ones are multiples of 16
   uint64_t links_ea;    ///< link_count AttachLink

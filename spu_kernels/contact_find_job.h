@@ -76,8 +76,8 @@ constexpr uint16_t kFindOfB = 0x8000;
 /// nothing in one body has moved by more than `margin` against anything in the other since they were found.
 struct alignas(128) FindTask {
   FindBody a, b;           ///< the same in all for a body with itself
-  uint64_t candidates_ea;  ///< room for kFindMaxCandidates FindCandidate; 0: nobody wants them
-  /// How many there are, from a task before, which are taken; kFindUnknown: they are looked for.
+  uint64_t candidates_ea;  ///< room for kFindMaxCandidates FindCandidate; 0: the kernel writes none
+  /// How many of them are known from a task before; kFindUnknown: the kernel looks for them.
   uint32_t candidate_count;
   float margin;           ///< metres, 0 or more: of the candidates that are looked for
   float low[4], high[4];  ///< the box that both bodies' ends have in common; x y z 0

@@ -3,7 +3,7 @@
 // Freestanding; included by the kernel and by the PPU side. All scalars are in the machine's own byte order.
 //
 // A plan contains what all bodies of one model share: constants of particles and regions, and lists that say
-// which slots are added to which sums. The PPU side writes it once (ppu/match_plan.h). Four particles, and
+// which slots are added to which sums. The PPU side writes it once (ppu/plans/match_plan.h). Four particles, and
 // four regions, stand together, one to a lane; a last group that is not full is padded with particles of no
 // mass and regions of nothing. Particle i is in slot i + 1; a slot is three quadwords.
 

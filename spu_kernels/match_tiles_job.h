@@ -14,7 +14,7 @@
 // half_width more on either side, and writes one, its own rows. Sums over planes continue from slice to
 // slice. The kernel fetches a slice while it works on the one before.
 //
-// The PPU side lays all that out (ppu/tile_plan.h): which slots hold what, and when one is free again.
+// The PPU side lays all that out (ppu/plans/tile_plan.h): which slots hold what, and when one is free again.
 // Sums follow the rules of match_job.h, with the same chains as for a whole body, so that the bits are the
 // same.
 //

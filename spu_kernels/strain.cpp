@@ -127,7 +127,8 @@ float largest_change(uint64_t ea, uint32_t count) {
   return largest_lane(largest);
 }
 
-/// What faces of strength s bear. Corners are summed, not averaged: middles are eight times as far from each other, edges four times as long.
+/// What faces of strength s bear. Corners are summed, not averaged: middles are eight times as far from each other, edges four times as
+/// long.
 struct Limits {
   vec_float4 middles, more_middles;  // apart: middles + s more_middles
   vec_float4 turn, edges_of_turn;    // rad, and what edges differ by: s edges_of_turn - tolerance

@@ -36,7 +36,7 @@ AttachmentFrame<2> frame_of(const b2Transform& pose) {
 
 }  // namespace
 
-bool Box2dAttachments::lets(const b2Body& a, const b2Body& b) const {
+bool Box2dAttachments::may_touch(const b2Body& a, const b2Body& b) const {
   if (links_.empty()) return true;
   const Box2dBody* const soft_a = soft_body_of_(a);
   const Box2dBody* const soft_b = soft_body_of_(b);

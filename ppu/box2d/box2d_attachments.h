@@ -26,7 +26,7 @@ namespace softcell::ppu {
 class Box2dAttachments {
  public:
   /// @param soft_body_of  the soft body that a b2Body is a particle of; null: none
-  /// @param filter        asks lets(); must outlive this object
+  /// @param filter        asks may_touch(); must outlive this object
   Box2dAttachments(b2World& world, std::function<Box2dBody*(const b2Body&)> soft_body_of, Box2dFilter& filter)
       : world_(world), soft_body_of_(std::move(soft_body_of)), filter_(filter) {}
   Box2dAttachments(const Box2dAttachments&) = delete;
@@ -47,7 +47,7 @@ class Box2dAttachments {
   std::optional<AttachmentEnds<2>> ends(AttachmentId id) const;
   std::vector<EndedAttachment> take_ended();
   /// Whether two bodies may collide as far as attachments are concerned.
-  bool lets(const b2Body& a, const b2Body& b) const;
+  bool may_touch(const b2Body& a, const b2Body& b) const;
   /// Whether an attachment keeps a body that Box2D does not know of from colliding with a rigid one.
   bool parts(const Box2dBody& body, const b2Body& rigid) const;
   using Piece = PieceOfBody<Box2dBody>;

@@ -26,7 +26,7 @@ Vector3f lifted(const b2Vec2& v, float z = 0) { return {v.x, v.y, z}; }
 bool may_touch(const b2Fixture& fixture, const CollisionFilter& filter) {
   const b2Filter& own = fixture.GetFilterData();
   return fixture.GetBody()->IsEnabled() &&
-         filter.lets({static_cast<int>(own.categoryBits), static_cast<int>(own.maskBits)});
+         filter.may_touch({static_cast<int>(own.categoryBits), static_cast<int>(own.maskBits)});
 }
 
 /// The ends of an edge fixture, or of one edge of a chain, in its body's frame.

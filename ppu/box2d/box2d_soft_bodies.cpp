@@ -40,8 +40,8 @@ struct Box2dSoftBodies::Impl {
         rest(w, [this](const b2Body& body) { return soft_body_of(body); }),
         filter(w,
                [this](const b2Fixture& a, const b2Fixture& b) {
-                 return attachments.lets(*a.GetBody(), *b.GetBody()) &&
-                        parting.lets(*a.GetBody(), *b.GetBody());
+                 return attachments.may_touch(*a.GetBody(), *b.GetBody()) &&
+                        parting.may_touch(*a.GetBody(), *b.GetBody());
                }),
         attachments(
             w, [this](const b2Body& body) { return soft_body_of(body); }, filter),
@@ -61,6 +61,7 @@ struct Box2dSoftBodies::Impl {
   void begin_step(float step) {
     SC_ASSERT(step > 0 && std::isfinite(step), "a time step of {} s", step);
     SC_ASSERT(!world.IsLocked(), "a step of {} s within a step of Box2D", step);
+    SC_ASSERT(!begun, "begin_step({} s) after begin_step({} s), without end_step() in between", step, *begun);
     if (!solve.has_begun(step) || std::ranges::any_of(bodies, [](const auto& body) {
           return body->was_changed() || body->was_pushed();
         })) {
@@ -77,11 +78,13 @@ struct Box2dSoftBodies::Impl {
     if (!surfaces) attachments.solve(bodies, step);
     for (const auto& body : bodies) body->hand_over(step);
     if (surfaces) surfaces->step(bodies, attachments, step);
+    begun = step;
   }
 
   void end_step(float step) {
-    SC_ASSERT(step > 0 && !world.IsLocked(), "the end of a step of {} s within a step of Box2D, or of none",
-              step);
+    SC_ASSERT(!world.IsLocked(), "end_step({} s) within a step of Box2D", step);
+    SC_ASSERT(begun == step, "end_step({} s) after begin_step({} s)", step, begun.value_or(0));
+    begun.reset();
     for (const auto& body : bodies) body->end_step(step);
     parting.update();
     break_strained();
@@ -109,7 +112,8 @@ struct Box2dSoftBodies::Impl {
     const auto found =
         std::ranges::find_if(bodies, [&](const auto& coupled) { return &coupled->soft() == &body; });
     if (found == bodies.end())
-      throw std::invalid_argument(std::string("the soft body ") + purpose + " is not in this world");
+      throw std::invalid_argument(std::string("the soft body ") + purpose +
+                                  " is not one of this Box2dSoftBodies");
     return found;
   }
   Box2dBody& find_attachable(const SoftBody<2>& body) {
@@ -133,8 +137,8 @@ struct Box2dSoftBodies::Impl {
   /// @throws std::runtime_error  there would be too many bodies
   void require_groups(std::size_t more) const {
     if (!surfaces && bodies.size() + more > kMostBodies)
-      throw std::runtime_error(
-          "a Box2D world has at most 32768 soft bodies: there are no more collision groups");
+      throw std::runtime_error("a Box2D world has at most " + std::to_string(kMostBodies) +
+                               " soft bodies: there are no more collision groups");
   }
   /// The unused negative group nearest to 0.
   std::int16_t free_group() const {
@@ -290,6 +294,7 @@ struct Box2dSoftBodies::Impl {
   PartingPieces parting;
   std::optional<SurfaceContacts2d> surfaces;  // none: bodies touch with circles
   std::optional<SleepSettings> sleep;
+  std::optional<float> begun;  // seconds, between begin_step() and end_step()
   std::chrono::nanoseconds spent{0}, waited{0};
   StepAhead<2> solve;                    // of `bodies`
   BreaksOfBodies breaks;                 // of `bodies`
@@ -478,7 +483,7 @@ std::optional<SoftRayHit2d> Box2dSoftBodies::cast_ray(const Eigen::Vector2f& fro
     // The drawn outline reaches at most half a cell beyond the particles. That half may be stretched, but not by more than the body's size.
     const Bounds<2> box = soft.bounds();
     const Eigen::Vector2f size = box.high - box.low;
-    if (!body->filter().lets(filter) ||
+    if (!body->filter().may_touch(filter) ||
         !is_any(way_in_box<2>({box.low - size, box.high + size}, from, to - from)))
       continue;
     const auto hit = impl_->query(soft).cast_ray(from, to);

@@ -18,7 +18,8 @@ class OneOfItsWorld {
   explicit OneOfItsWorld(const b2World& world) : world_(&world) {
     const std::lock_guard lock(mutex());
     if (std::ranges::find(worlds(), world_) != worlds().end())
-      throw std::invalid_argument("this Box2D world has a Box2dSoftBodies already, and may have one");
+      throw std::invalid_argument(
+          "this Box2D world has a Box2dSoftBodies already; a world can have only one");
     worlds().push_back(world_);
   }
   ~OneOfItsWorld() {

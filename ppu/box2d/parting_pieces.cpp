@@ -38,7 +38,7 @@ void PartingPieces::add(std::span<Box2dBody* const> pieces) {
     }
 }
 
-bool PartingPieces::lets(const b2Body& a, const b2Body& b) const {
+bool PartingPieces::may_touch(const b2Body& a, const b2Body& b) const {
   return keys_.empty() || !keys_.contains(key_of(a, b));
 }
 

@@ -22,7 +22,7 @@ class PartingPieces {
   void add(std::span<Box2dBody* const> pieces);
   bool empty() const { return pairs_.empty(); }
   /// Whether two particles may touch.
-  bool lets(const b2Body& a, const b2Body& b) const;
+  bool may_touch(const b2Body& a, const b2Body& b) const;
 
   /// A particle of another body that must not touch a particle of this one.
   struct Kept {

@@ -185,7 +185,7 @@ void SurfaceContacts2d::wake_those_in_the_way(Bodies bodies) {
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     BodyInStage& sleeper = in_stage_[i];
     const auto hits = [&](std::uint32_t other) {
-      return overlap(sleeper.box, in_stage_[other].box) && sleeper.filter.lets(in_stage_[other].filter);
+      return overlap(sleeper.box, in_stage_[other].box) && sleeper.filter.may_touch(in_stage_[other].filter);
     };
     if (bodies[i]->soft().asleep() && std::ranges::any_of(moving_, hits)) {
       bodies[i]->wake();

@@ -462,7 +462,7 @@ void BulletObstacles::add_triangles(const btCollisionShape& shape, Obstacle obst
 }
 
 void BulletObstacles::apply(const std::vector<bool>& at_rest) {
-  SC_ASSERT(at_rest.size() == rigids_.size(), "what rests of {} of {} rigid bodies", at_rest.size(),
+  SC_ASSERT(at_rest.size() == rigids_.size(), "at_rest has {} entries for {} rigid bodies", at_rest.size(),
             rigids_.size());
   for (std::size_t i = 0; i < rigids_.size(); ++i) {
     if (rigids_[i].inverse_mass == 0 || (at_rest[i] && !objects_[i]->isActive())) continue;

@@ -236,7 +236,8 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
     const auto found = std::find_if(bodies.begin(), bodies.end(),
                                     [&](const auto& coupled) { return &coupled->soft() == &body; });
     if (found == bodies.end())
-      throw std::invalid_argument(std::string("the soft body ") + purpose + " is not in this world");
+      throw std::invalid_argument(std::string("the soft body ") + purpose +
+                                  " is not one of this BulletSoftBodies");
     return found;
   }
 
@@ -443,7 +444,7 @@ std::optional<SoftRayHit> BulletSoftBodies::cast_ray(const Eigen::Vector3f& from
   SC_ASSERT(from.allFinite() && to.allFinite(), "a ray from ({}, {}, {})", from.x(), from.y(), from.z());
   std::optional<SoftRayHit> nearest;
   for (const auto& body : impl_->bodies) {
-    if (!body->filter().lets(filter) || !is_any(way_in_box<3>(body->soft().bounds(), from, to - from)))
+    if (!body->filter().may_touch(filter) || !is_any(way_in_box<3>(body->soft().bounds(), from, to - from)))
       continue;
     const auto hit = SurfaceQuery(body->soft()).cast_ray(from, to);
     if (hit && (!nearest || hit->share < nearest->hit.share)) nearest = SoftRayHit{&body->soft(), *hit};

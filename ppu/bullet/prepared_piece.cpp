@@ -9,7 +9,8 @@ namespace softcell::ppu {
 PreparedPieces prepare_pieces(const std::shared_ptr<const SoftBodyModel<3>>& model,
                               std::span<const std::uint32_t> faces, std::uint32_t least_cells,
                               const ContactModel* whole, const PrepareModel& prepare) {
-  SC_ASSERT(static_cast<bool>(prepare), "nobody prepares the pieces of {} faces", faces.size());
+  SC_ASSERT(static_cast<bool>(prepare), "the pieces of {} faces have no function that prepares them",
+            faces.size());
   PlannedPieces<3> planned = plan_pieces(model, faces, least_cells);
   PreparedPieces made{.stay = {}, .vanished = std::move(planned.vanished)};
   for (BodyPiece<3>& piece : planned.stay) {

@@ -183,7 +183,7 @@ void SurfaceContacts::wake_those_in_the_way(std::span<SurfaceBody* const> bodies
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     BodyInStage& sleeper = in_stage_[i];
     const auto is_in_the_way_of = [&](std::uint32_t other) {
-      return overlap(sleeper.box, in_stage_[other].box) && sleeper.filter.lets(in_stage_[other].filter);
+      return overlap(sleeper.box, in_stage_[other].box) && sleeper.filter.may_touch(in_stage_[other].filter);
     };
     if (sleeps(bodies[i]) && std::any_of(moving_.begin(), moving_.end(), is_in_the_way_of))
       bodies[i]->rouse();

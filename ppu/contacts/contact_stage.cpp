@@ -139,7 +139,7 @@ void ContactStage::find_held(std::span<const ContactRigid> rigids, float step) {
 bool ContactStage::may_touch(std::uint32_t a, std::uint32_t b, std::span<const BodyInStage> bodies) const {
   if (bodies[a].asleep && bodies[b].asleep) return false;
   if (a == b) return may_touch_itself(bodies_[a]);
-  if (!bodies[a].filter.lets(bodies[b].filter)) return false;
+  if (!bodies[a].filter.may_touch(bodies[b].filter)) return false;
   return !has_attachments() || !attachments->parts(a, b);
 }
 

@@ -136,7 +136,7 @@ std::span<const std::byte> whole_file_at(const void* elf) {
   return {static_cast<const std::byte*>(elf), elf_bytes(elf)};
 }
 
-/// The image of a handle, in the flavour that is wanted.
+/// The image of a handle, plain or checked.
 std::shared_ptr<const KernelImage> image_of(const spe_program_handle_t& program) {
   const bool extended = program.handle_size >= sizeof(ProgramHandle);
   const auto* const handle = extended ? reinterpret_cast<const ProgramHandle*>(&program) : nullptr;

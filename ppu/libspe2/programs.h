@@ -20,15 +20,15 @@ struct ProgramHandle {
 };
 static_assert(sizeof(ProgramHandle) == 40, "as softcell_embed_spu_program writes it");
 
-/// The program whose ELF file begins there, in the flavour that the settings ask for: the checked one lies at
+/// The program whose ELF file begins there: the plain image or the checked one, as the settings ask: the checked one lies at
 /// `checked_elf`, or in the file itself as softcell-spu-gcc puts it there.
 /// @param name  for messages, if the file has none.
 /// @param checked_elf  null: there is none besides.
-/// @throws std::runtime_error  it cannot be loaded, or has no such flavour.
+/// @throws std::runtime_error  it cannot be loaded, or has no checked image.
 std::shared_ptr<const ls_sim::KernelImage> program_in_memory(std::string_view name, const void* elf,
                                                              const void* checked_elf);
 
-/// Likewise of a file, from `offset` on; the checked flavour may lie in a file beside it.
+/// Likewise of a file, from `offset` on; the checked image may lie in a file beside it.
 /// @return  null with errno set: it cannot be read.
 std::shared_ptr<const ls_sim::KernelImage> program_in_file(const std::string& path, std::uint64_t offset);
 

@@ -437,13 +437,13 @@ void SpeSolver<kDimension>::take_back(const Member& member) {
   Body& body = *member.body;
   if (member.group->bodies) {
     const auto velocities = member.group->bodies->velocities(member.number);
-    body.take_pulled([&](std::size_t i) { return Kernel::read(velocities[i]); });
+    body.set_pulled_velocities([&](std::size_t i) { return Kernel::read(velocities[i]); });
     return;
   }
   if constexpr (kDimension == 3) {
     const std::span<const std::uint32_t> place_of = member.group->plans->tiles->place_of();
     const auto velocities = member.tiled->velocities();
-    body.take_pulled([&](std::size_t i) { return Kernel::read(velocities[place_of[i]]); });
+    body.set_pulled_velocities([&](std::size_t i) { return Kernel::read(velocities[place_of[i]]); });
   }
 }
 

@@ -3,6 +3,7 @@
 
 #include <spu_intrinsics.h>
 
+#include "common/reciprocal.h"
 #include "common/transpose.h"
 
 namespace softcell::spu {
@@ -43,6 +44,12 @@ inline vec_float4 with_fourth(vec_float4 xyz, vec_float4 fourth) {
 
 /// a . b in all lanes. @pre the product of the fourth lanes is 0
 inline vec_float4 dot_in_all_lanes(vec_float4 a, vec_float4 b) { return sum_of_lanes(spu_mul(a, b)); }
+
+/// |v|, of a vector whose fourth lane is 0.
+inline vec_float4 length_in_all_lanes(vec_float4 v) {
+  const vec_float4 square = dot_in_all_lanes(v, v);
+  return spu_mul(square, reciprocal_sqrt(square));
+}
 
 /// y z x, and the fourth lane.
 inline vec_float4 turned_left(vec_float4 v) {

@@ -19,7 +19,8 @@ namespace softcell::spu {
 inline void stiffen(vec_ushort8 corner, vec_float4* changes, const vec_float4* start,
                     const vec_float4* positions, float share, float inverse_spacing) {
   const vec_float4 zero = spu_splats(0.0f);
-  // Relative to the first corner: far from the origin, or at high speed, sums would lose digits, and SPUs truncate all of them the same way.
+  // Relative to the first corner: far from the origin, or at high speed, sums would lose digits, and SPUs truncate all of them the same
+  // way.
   const uint32_t first_corner = spu_extract(corner, 0);
   const vec_float4 first = positions[first_corner];
   const vec_float4 carried = spu_mul(only_xyz(spu_add(start[first_corner], changes[first_corner])),

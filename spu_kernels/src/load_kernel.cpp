@@ -35,7 +35,7 @@ ls_sim::KernelImage load_kernel(std::string_view name, bool checked, ls_sim::Mac
   return ls_sim::load_image(name, image_file(name, checked));
 }
 
-bool holds_checked_flavour(const std::filesystem::path& file) {
+bool holds_checked_image(const std::filesystem::path& file) {
   const auto bytes = base::read_file(file, kMostImageBytes);
   return begins_as_elf(bytes) && !ls_sim::image_section(bytes, kCheckedSection).empty();
 }
@@ -55,10 +55,10 @@ ls_sim::KernelImage load_kernel_file(const std::filesystem::path& file, bool che
         "makes, or an executable that a compiler for the SPU has made");
   try {
     if (checked) {
-      const auto flavour = ls_sim::image_section(bytes, kCheckedSection);
-      if (flavour.empty())
+      const auto checked_image = ls_sim::image_section(bytes, kCheckedSection);
+      if (checked_image.empty())
         throw std::runtime_error("it holds no checked image; softcell-spu-gcc makes files that do");
-      return ls_sim::load_image(name, flavour);
+      return ls_sim::load_image(name, checked_image);
     }
     return ls_sim::is_spu_program(bytes) ? ls_sim::load_spu_program(name, bytes)
                                          : ls_sim::load_image(name, bytes);

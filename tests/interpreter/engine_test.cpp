@@ -41,37 +41,37 @@ const dma::Schedule kSchedules[] = {
 
 /// Both optimisations of a program, under each schedule.
 struct Case {
-  std::string flavour;
+  std::string optimisation;
   dma::Schedule schedule;
 };
 std::vector<Case> cases() {
   std::vector<Case> all;
-  for (const char* flavour : {".O2", ".Os"}) {
-    for (const dma::Schedule& schedule : kSchedules) all.push_back({flavour, schedule});
+  for (const char* optimisation : {".O2", ".Os"}) {
+    for (const dma::Schedule& schedule : kSchedules) all.push_back({optimisation, schedule});
   }
   return all;
 }
 
 TEST(SpuProgram, ChecksItself) {
   for (const Case& each : cases()) {
-    const KernelImage image = load_program("selfcheck" + each.flavour);
+    const KernelImage image = load_program("selfcheck" + each.optimisation);
     dma::AddressSpace memory;
     SpeGroup group(memory, {.spes = 1, .schedule = each.schedule});
     group.start(0, image, {});
     const RunResult result = group.wait(0);
     ASSERT_TRUE(result.ended_normally()) << (result.fault ? result.fault->message() : "");
-    EXPECT_EQ(result.status(), 0u) << "the number of the check that failed, " << each.flavour;
-    if (each.flavour == ".O2") {
+    EXPECT_EQ(result.status(), 0u) << "the number of the check that failed, " << each.optimisation;
+    if (each.optimisation == ".O2") {
       EXPECT_EQ(group.statistics(0).instructions, 27474u);
     }
   }
 }
 
 TEST(SpuProgram, WithoutMistakesHasNoFindings) {
-  for (const char* flavour : {".O2", ".Os"}) {
+  for (const char* optimisation : {".O2", ".Os"}) {
     const std::vector<std::byte> input = read_bytes("vector_math.in.bin");
-    KernelImage checks = load_program(std::string("selfcheck") + flavour);
-    KernelImage vectors = load_program(std::string("vector_math") + flavour);
+    KernelImage checks = load_program(std::string("selfcheck") + optimisation);
+    KernelImage vectors = load_program(std::string("vector_math") + optimisation);
     checks.checked = vectors.checked = true;
     dma::AddressSpace memory;
     const dma::Buffer<std::byte> in(memory, "in", input.size()), out(memory, "out", 5120);
@@ -109,7 +109,7 @@ std::uint32_t bits_of(float value) {
 TEST(SpuProgram, ScalesAStreamInTypedBuffers) {
   constexpr std::uint32_t kCount = 5024;
   for (const Case& each : cases()) {
-    const KernelImage image = load_program("scale_stream" + each.flavour);
+    const KernelImage image = load_program("scale_stream" + each.optimisation);
     dma::AddressSpace memory;
     dma::Buffer<float> in(memory, "in", kCount), out(memory, "out", kCount);
     for (std::uint32_t i = 0; i < kCount; ++i) in[i] = static_cast<float>(i);
@@ -122,7 +122,7 @@ TEST(SpuProgram, ScalesAStreamInTypedBuffers) {
     for (std::uint32_t i = 0; i < kCount; ++i) ASSERT_EQ(out[i], 0.5f * static_cast<float>(i) + 3.0f) << i;
     EXPECT_EQ(group.statistics(0).dma.get.commands + group.statistics(0).dma.put.commands, 7u);
     EXPECT_EQ(group.statistics(0).dma.get.bytes + group.statistics(0).dma.put.bytes, 40320u);
-    if (each.flavour == ".O2") {
+    if (each.optimisation == ".O2") {
       EXPECT_EQ(group.statistics(0).instructions, 17905u);
     }
   }
@@ -143,7 +143,7 @@ TEST(SpuProgram, WithDebugInformationFailsAtALine) {
 TEST(SpuProgram, GathersRecordsByAList) {
   constexpr std::uint32_t kRecords = 256, kPicked = 96;
   for (const Case& each : cases()) {
-    const KernelImage image = load_program("gather_list" + each.flavour);
+    const KernelImage image = load_program("gather_list" + each.optimisation);
     dma::AddressSpace memory;
     dma::Buffer<std::uint32_t> table(memory, "table", kRecords * 4), indices(memory, "indices", kPicked),
         out(memory, "out", kPicked * 4);
@@ -162,7 +162,7 @@ TEST(SpuProgram, GathersRecordsByAList) {
 TEST(SpuProgram, CountsOnSixSpesAtOnce) {
   constexpr std::uint32_t kTimes = 500;
   for (const Case& each : cases()) {
-    const KernelImage image = load_program("atomic_count" + each.flavour);
+    const KernelImage image = load_program("atomic_count" + each.optimisation);
     dma::AddressSpace memory;
     dma::Buffer<std::uint32_t> counter(memory, "counter", 32);
     SpeGroup group(memory, {.spes = 6, .schedule = each.schedule});
@@ -174,7 +174,7 @@ TEST(SpuProgram, CountsOnSixSpesAtOnce) {
 
 TEST(SpuProgram, AnswersInItsMailbox) {
   for (const Case& each : cases()) {
-    const KernelImage image = load_program("mailbox_echo" + each.flavour);
+    const KernelImage image = load_program("mailbox_echo" + each.optimisation);
     dma::AddressSpace memory;
     SpeGroup group(memory, {.spes = 1, .schedule = each.schedule});
     group.start(0, image, {});
@@ -192,14 +192,14 @@ TEST(SpuProgram, ComputesVectorsToTheBit) {
   const std::vector<std::byte> input = read_bytes("vector_math.in.bin"),
                                expected = read_bytes("vector_math.expected.bin");
   for (const Case& each : cases()) {
-    const KernelImage image = load_program("vector_math" + each.flavour);
+    const KernelImage image = load_program("vector_math" + each.optimisation);
     dma::AddressSpace memory;
     dma::Buffer<std::byte> in(memory, "in", input.size()), out(memory, "out", expected.size());
     std::ranges::copy(input, in.data());
     SpeGroup group(memory, {.spes = 1, .schedule = each.schedule});
     group.start(0, image, {.argp = in.ea().value, .envp = out.ea().value});
     EXPECT_TRUE(group.wait(0).ended_normally());
-    EXPECT_TRUE(std::ranges::equal(out.span(), expected)) << each.flavour;
+    EXPECT_TRUE(std::ranges::equal(out.span(), expected)) << each.optimisation;
   }
 }
 

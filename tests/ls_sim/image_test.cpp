@@ -111,7 +111,7 @@ TEST(LoadImage, ReadsAnImageThatLiesElsewhere) {
   for (const ImageObject& object : image.objects) EXPECT_GE(object.begin.value, image.data_begin);
 }
 
-TEST(LoadImage, TheCheckedFlavourLiesWhereTheOtherDoes) {
+TEST(LoadImage, TheCheckedImageLiesWhereTheOtherDoes) {
   const KernelImage image = test_image("resides_checked");
   EXPECT_TRUE(image.checked);
   EXPECT_EQ(image.begin, 0x20000u);

@@ -147,8 +147,8 @@ TEST(Program, IsToldWhatItDidWhenTheProcessorStopsIt) {
 }
 
 TEST(Program, EndsItsStaticObjectsTheLastFirst) {
-  for (const auto& flavour : {program("destroys").plain, program("destroys").checked}) {
-    const Ended ended = run("destroys", flavour, EntryArguments{});
+  for (const auto& build : {program("destroys").plain, program("destroys").checked}) {
+    const Ended ended = run("destroys", build, EntryArguments{});
     EXPECT_EQ(ended.output,
               "first is made\nsecond is made\nthird is made\natexit\na hundred end\nthird ends\nsecond "
               "ends\nfirst ends\nthe last destructor function\nthe first destructor function\n");
@@ -231,7 +231,7 @@ TEST(Program, SharesCountersAndLocksWithOthers) {
   }
 }
 
-/// Runs a program in both flavours with a buffer of its own, whose address it is given.
+/// Runs a program in both builds with a buffer of its own, whose address it is given.
 template <class Prepare>
 void expect_to_pass_with_a_buffer(const char* name, const Prepare& prepare) {
   for (const bool checked : {false, true}) {

@@ -614,7 +614,7 @@ TEST(ContactSolve, WhatIsTooLargeIsRefused) {
   }
 }
 
-TEST(ContactSolve, ItsCheckedFlavourFindsNothing) {
+TEST(ContactSolve, ItsCheckedImageFindsNothing) {
   test::expect_no_findings([](const ls_sim::SpeOptions& options) {
     SolveRig rig(options);
     SolveTask task = rig.task();

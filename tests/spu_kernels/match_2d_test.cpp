@@ -437,7 +437,7 @@ TEST(Match2d, GivesTheSameBytesOnAnySpesUnderEveryScheduleAndOnAFreshLocalStore)
   }
 }
 
-TEST(Match2d, ItsCheckedFlavourFindsNothingAndGivesTheSameBytes) {
+TEST(Match2d, ItsCheckedImageFindsNothingAndGivesTheSameBytes) {
   const std::vector<spu::MatchVector2d> expected = seven_bodies({.spes = 1});
   test::expect_no_findings([&](const ls_sim::SpeOptions& options) {
     const std::vector<spu::MatchVector2d> all = seven_bodies(options);

@@ -389,7 +389,7 @@ TEST(Match, GivesTheSameBytesOnAnySpesUnderEveryScheduleAndOnAFreshLocalStore) {
   }
 }
 
-TEST(Match, ItsCheckedFlavourFindsNothingAndGivesTheSameBytes) {
+TEST(Match, ItsCheckedImageFindsNothingAndGivesTheSameBytes) {
   const std::vector<spu::SkinCorner> expected = seven_bodies({.spes = 1});
   test::expect_no_findings([&](const ls_sim::SpeOptions& options) {
     const std::vector<spu::SkinCorner> all = seven_bodies(options);

@@ -115,7 +115,7 @@ TEST(Skin, AgreesWithTheOracleInRandomPoses) {
   }
 }
 
-TEST(Skin, ItsCheckedFlavourFindsNothing) {
+TEST(Skin, ItsCheckedImageFindsNothing) {
   for (const char* schedule : {"eager", "lazy", "random:5"}) {
     ls_sim::Findings findings;
     SkinRig rig(ppu::make_torus(0.72f, 0.28f, 40, 20), 0.2f,

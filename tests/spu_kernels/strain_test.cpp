@@ -171,7 +171,7 @@ TEST(Strain, ABodyThatIsTooLargeIsRefused) {
   EXPECT_EQ(body.result[0].faces, ~0u) << "nothing is written";
 }
 
-TEST(Strain, ItsCheckedFlavourFindsNothing) {
+TEST(Strain, ItsCheckedImageFindsNothing) {
   test::expect_no_findings([](const ls_sim::SpeOptions& options) {
     for (const bool flat : {false, true}) {
       dma::AddressSpace memory;

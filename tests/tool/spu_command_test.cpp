@@ -173,8 +173,8 @@ TEST_F(SpuCommand, RefusesTwoOutputsInOneFile) {
 }
 
 TEST_F(SpuCommand, RefusesToReplaceWhatItReads) {
-  for (const char* flavour : {"k.spu.elf", "k.checked.spu.elf"})
-    std::filesystem::copy_file(kSaxpy, folder_ / flavour);
+  for (const char* name : {"k.spu.elf", "k.checked.spu.elf"})
+    std::filesystem::copy_file(kSaxpy, folder_ / name);
   const std::string image = folder_ / "k.spu.elf", checked = folder_ / "k.checked.spu.elf",
                     x = folder_ / "x.bin";
   const auto size_before = std::filesystem::file_size(image);
@@ -364,7 +364,7 @@ TEST_F(SpuCommand, SaysHowMuchOfACheckedStackIsForTheChecks) {
       run_softcell("spu budget --checked " SOFTCELL_SPU_PROGRAMS "/scale_stream.O2.elf");
   EXPECT_EQ(on_spu.status, 0) << on_spu.output;
   EXPECT_EQ(on_spu.output.find("checked image"), std::string::npos)
-      << "a program built for the SPU has no such flavour: " << on_spu.output;
+      << "a program built for the SPU has no checked image: " << on_spu.output;
   const CommandResult budget =
       run_softcell("spu budget --checked " + kSaxpy + " --json " + (folder_ / "b.json"));
   ASSERT_EQ(budget.status, 0) << budget.output;

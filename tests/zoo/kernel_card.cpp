@@ -32,8 +32,8 @@ bool set(KernelCard& card, const std::string& key, const std::string& value) {
     card.twin = value;
   } else if (key == "keeps") {
     card.keeps = split_at_commas(value);
-  } else if (key == "flavour") {
-    card.flavour = value;
+  } else if (key == "build") {
+    card.build = value;
   } else if (key == "envp") {
     card.envp = value;
   } else if (key == "ppu") {

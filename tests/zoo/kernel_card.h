@@ -5,8 +5,8 @@
 //   // names: get                    broken: what the message names besides, a command or a channel
 //   // twin: legal/small_sizes       broken: the nearest legal case
 //   // keeps: size-zero, list-size   legal: the rules that it comes close to
-//   // flavour: checked              broken: only the checked flavour finds it; otherwise the plain one does
-//   // flavour: plain                legal: not to be checked; otherwise both flavours are left alone
+//   // build: checked              broken: only the checked image finds it; otherwise the plain one does
+//   // build: plain                legal: not to be checked; otherwise both builds are left alone
 //   // envp: read-only               what envp leads to; otherwise 64 KB that may be read and written
 //   // spes: 2                       runs on so many SPEs at once; otherwise on one
 //   // ppu: in_mbox=42               what the PPU side does meanwhile
@@ -24,14 +24,14 @@ struct KernelCard {
   std::string name;  ///< of its file, without extension
   std::string rule, names, twin;
   std::vector<std::string> keeps;
-  std::string flavour, envp, ppu;
+  std::string build, envp, ppu;
   int spes = 1;
   int deadline_ms = 0;  ///< 0: the usual
   std::string text;
   int broken_line = 0;  ///< of the marker `// BROKEN`; 0: none
 
-  bool runs_plain() const { return flavour != "checked"; }
-  bool runs_checked() const { return flavour == "checked" || (kind == "legal" && flavour != "plain"); }
+  bool runs_plain() const { return build != "checked"; }
+  bool runs_checked() const { return build == "checked" || (kind == "legal" && build != "plain"); }
   /// Where the fault is: "size_3.cpp:10".
   std::string place() const { return name + ".cpp:" + std::to_string(broken_line); }
 };

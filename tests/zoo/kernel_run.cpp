@@ -16,18 +16,18 @@ namespace {
 
 constexpr std::size_t kWords = 64 * 1024 / sizeof(std::uint32_t);
 
-ls_sim::KernelImage load(const KernelCard& card, Flavour flavour, ls_sim::Machine machine) {
+ls_sim::KernelImage load(const KernelCard& card, Build build, ls_sim::Machine machine) {
   const bool is_spu = machine == ls_sim::Machine::kSpu;
   const std::string path = std::string(ZOO_IMAGES) + "/zoo_" + card.kind + "_" + card.name +
-                           (is_spu                         ? ".elf"
-                            : flavour == Flavour::kChecked ? ".checked.spu.elf"
-                                                           : ".spu.elf");
+                           (is_spu                     ? ".elf"
+                            : build == Build::kChecked ? ".checked.spu.elf"
+                                                       : ".spu.elf");
   std::ifstream file(path, std::ios::binary);
   const std::vector<char> bytes{std::istreambuf_iterator<char>(file), {}};
   if (bytes.empty()) throw std::runtime_error("cannot read " + path);
   if (!is_spu) return ls_sim::load_image(card.name, std::as_bytes(std::span(bytes)));
   ls_sim::KernelImage image = ls_sim::load_spu_program(card.name, std::as_bytes(std::span(bytes)));
-  image.checked = flavour == Flavour::kChecked;
+  image.checked = build == Build::kChecked;
   return image;
 }
 
@@ -59,17 +59,16 @@ void act_as_ppu(const std::string& action, ls_sim::ProblemState& spe) {
 
 }  // namespace
 
-Observation run(const KernelCard& card, Flavour flavour, const dma::Schedule& schedule,
-                ls_sim::Machine machine) {
+Observation run(const KernelCard& card, Build build, const dma::Schedule& schedule, ls_sim::Machine machine) {
   dma::AddressSpace memory;
   dma::Buffer<std::uint32_t> data(memory, "data", kWords);
   std::iota(data.span().begin(), data.span().end(), 0u);
   dma::Buffer<std::uint32_t> other(memory, "other", kWords, options_of(card.envp));
-  const ls_sim::KernelImage image = load(card, flavour, machine);
+  const ls_sim::KernelImage image = load(card, build, machine);
 
   ls_sim::Findings findings;
   ls_sim::SpeOptions options{.spes = card.spes, .schedule = schedule, .clock = ls_sim::Clock::kSimulated};
-  if (flavour == Flavour::kChecked) options.findings = &findings;
+  if (build == Build::kChecked) options.findings = &findings;
   if (card.deadline_ms > 0) options.deadline = std::chrono::milliseconds(card.deadline_ms);
 
   Observation observation;

@@ -11,7 +11,7 @@
 
 namespace softcell::zoo {
 
-enum class Flavour { kPlain, kChecked };
+enum class Build { kPlain, kChecked };
 
 /// What came of it.
 struct Observation {
@@ -21,7 +21,7 @@ struct Observation {
 
 /// argp leads to 64 KB of words, each of which is its own index.
 /// @param machine  kSpu: the kernel as built for the SPU, by the interpreter; only with a compiler for the SPU
-Observation run(const KernelCard& card, Flavour flavour, const dma::Schedule& schedule,
+Observation run(const KernelCard& card, Build build, const dma::Schedule& schedule,
                 ls_sim::Machine machine = ls_sim::Machine::kHost);
 
 }  // namespace softcell::zoo

@@ -39,8 +39,8 @@ const char* word_for(dma::Evidence evidence) {
 
 /// The message of the first fault or finding of a run.
 std::string message_of(const KernelCard& card) {
-  const Flavour flavour = card.runs_plain() ? Flavour::kPlain : Flavour::kChecked;
-  const Observation observation = run(card, flavour, dma::parse_schedule("eager"));
+  const Build build = card.runs_plain() ? Build::kPlain : Build::kChecked;
+  const Observation observation = run(card, build, dma::parse_schedule("eager"));
   for (const ls_sim::RunResult& result : observation.results) {
     if (result.fault) return result.fault->message();
   }

@@ -55,11 +55,11 @@ std::vector<std::string> mistakes(const Observation& observation) {
 template <class Body>
 void for_each_run(const KernelCard& card, Body body) {
   if (const auto why = kOtherwise.find(card.name); why != kOtherwise.end()) GTEST_SKIP() << why->second;
-  for (const Flavour flavour : {Flavour::kPlain, Flavour::kChecked}) {
-    if (flavour == Flavour::kPlain ? !card.runs_plain() : !card.runs_checked()) continue;
+  for (const Build build : {Build::kPlain, Build::kChecked}) {
+    if (build == Build::kPlain ? !card.runs_plain() : !card.runs_checked()) continue;
     for (const char* schedule : {"eager", "lazy", "random:1"}) {
-      SCOPED_TRACE(std::string(flavour == Flavour::kPlain ? "plain, " : "checked, ") + schedule);
-      body(run(card, flavour, dma::parse_schedule(schedule), ls_sim::Machine::kSpu));
+      SCOPED_TRACE(std::string(build == Build::kPlain ? "plain, " : "checked, ") + schedule);
+      body(run(card, build, dma::parse_schedule(schedule), ls_sim::Machine::kSpu));
     }
   }
 }

@@ -26,11 +26,11 @@ std::string name_of(const ::testing::TestParamInfo<KernelCard>& info) { return i
 
 template <class Body>
 void for_each_run(const KernelCard& card, Body body) {
-  for (const Flavour flavour : {Flavour::kPlain, Flavour::kChecked}) {
-    if (flavour == Flavour::kPlain ? !card.runs_plain() : !card.runs_checked()) continue;
+  for (const Build build : {Build::kPlain, Build::kChecked}) {
+    if (build == Build::kPlain ? !card.runs_plain() : !card.runs_checked()) continue;
     for (const char* schedule : {"eager", "lazy", "random:1", "random:2"}) {
-      SCOPED_TRACE(std::string(flavour == Flavour::kPlain ? "plain, " : "checked, ") + schedule);
-      body(flavour, run(card, flavour, dma::parse_schedule(schedule)));
+      SCOPED_TRACE(std::string(build == Build::kPlain ? "plain, " : "checked, ") + schedule);
+      body(build, run(card, build, dma::parse_schedule(schedule)));
     }
   }
 }
@@ -52,10 +52,10 @@ class ZooBroken : public ::testing::TestWithParam<KernelCard> {
 
 TEST_P(ZooBroken, IsCaught) {
   const KernelCard& card = GetParam();
-  const bool only_a_finding = card.flavour == "checked";
+  const bool only_a_finding = card.build == "checked";
   const std::string expected =
       "expected: " + card.rule + " of " + card.names + " at " + card.place() + "; the mistake: " + card.text;
-  for_each_run(card, [&](Flavour, const Observation& observation) {
+  for_each_run(card, [&](Build, const Observation& observation) {
     for (const ls_sim::RunResult& result : observation.results) {
       if (only_a_finding) {
         EXPECT_FALSE(result.fault) << result.fault->message();
@@ -76,7 +76,7 @@ TEST_P(ZooBroken, IsCaught) {
 class ZooLegal : public ::testing::TestWithParam<KernelCard> {};
 
 TEST_P(ZooLegal, IsLeftAlone) {
-  for_each_run(GetParam(), [&](Flavour, const Observation& observation) {
+  for_each_run(GetParam(), [&](Build, const Observation& observation) {
     for (const ls_sim::RunResult& result : observation.results) {
       EXPECT_FALSE(result.fault) << result.fault->message();
       EXPECT_TRUE(result.ended_normally() && result.status() == 0) << "stop code " << result.stop_code;

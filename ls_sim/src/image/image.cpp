@@ -17,9 +17,9 @@ constexpr std::uint32_t kDeclarationMagic = 0x324B4353;  // "SCK2", written by l
 
 /// The section that ls.ld writes for the loader.
 struct Declaration {
-  std::uint32_t magic, stack_bytes, budget_bytes, end, flavour;
+  std::uint32_t magic, stack_bytes, budget_bytes, end, kind;
 };
-constexpr std::uint32_t kChecked = 1, kProgram = 2;  // bits of the flavour
+constexpr std::uint32_t kChecked = 1, kProgram = 2;  // bits of the kind
 
 /// The one loadable segment that ls.ld makes, checked against the local store.
 Elf64_Phdr read_segment(const ElfFile& elf) {
@@ -70,7 +70,7 @@ Declaration read_declaration(const ElfFile& elf, const Elf64_Phdr& segment) {
     elf.refuse("its declared stack of " + std::to_string(declared.stack_bytes) +
                " bytes is not a positive multiple of 16 that fits beside the image in 256 KB");
   }
-  if (declared.flavour > (kChecked | kProgram))
+  if (declared.kind > (kChecked | kProgram))
     elf.refuse("its .softcell.kernel section says neither checked nor unchecked, kernel nor program");
   return declared;
 }
@@ -182,7 +182,7 @@ KernelImage load_image(std::string_view name, std::span<const std::byte> file) {
   const Elf64_Phdr segment = read_segment(elf);
   const std::uint64_t file_end = segment.p_vaddr + segment.p_filesz;
   const Declaration declared = read_declaration(elf, segment);
-  const bool is_program = (declared.flavour & kProgram) != 0;
+  const bool is_program = (declared.kind & kProgram) != 0;
   if (!is_program) refuse_relocations(elf);
   const Layout layout = read_layout(elf, segment);
   const std::uint64_t entry = elf.header().e_entry;
@@ -211,7 +211,7 @@ KernelImage load_image(std::string_view name, std::span<const std::byte> file) {
   image.data_end = image.data_begin + image.sizes.data;
   image.objects = read_objects(elf, STT_OBJECT, image.begin, declared.end);
   image.functions = read_objects(elf, STT_FUNC, image.begin, declared.end);
-  image.checked = (declared.flavour & kChecked) != 0;
+  image.checked = (declared.kind & kChecked) != 0;
   image.program = is_program;
   const auto bytes = elf.slice(segment.p_offset, segment.p_filesz, "its segment");
   image.bytes.assign(bytes.begin(), bytes.end());

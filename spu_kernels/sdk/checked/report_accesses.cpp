@@ -1,5 +1,5 @@
-// What the checked flavour of a kernel is linked with: the functions that the compiler calls before each load
-// and store. Each tells the emulator, which keeps the books (ls_sim/checker.h), and returns.
+// What the checked image of a kernel is linked with: the functions that the compiler calls before each load
+// and store. Each tells the emulator, which keeps the books (ls_sim/src/checker/checker.h), and returns.
 //
 // The compilers offer such calls for their sanitizers, of which nothing else is used here. GCC's for the
 // address sanitizer leave out what lies within a variable anyway, so its kernels are built for the thread

@@ -1,4 +1,4 @@
-// What the thread sanitizer's flavour of a program calls for __sync_*, __atomic_* and _Atomic. One thread runs in a local store, so each
+// What the thread sanitizer's build of a program calls for __sync_*, __atomic_* and _Atomic. One thread runs in a local store, so each
 // is a load, a store or both, which are reported as others are.
 
 #include "report.h"

@@ -7,7 +7,7 @@
 
 extern "C" {
 
-// In the checked flavour sdk/checked has these three, which report a copy as a whole, from the line that calls them. A copy need not
+// In the checked image sdk/checked has these three, which report a copy as a whole, from the line that calls them. A copy need not
 // be of written bytes only, such as the padding of structures.
 #ifndef SOFTCELL_CHECKED
 void* memcpy(void* to, const void* from, size_t bytes) {

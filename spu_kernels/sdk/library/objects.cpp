@@ -46,8 +46,9 @@ void operator delete[](void* memory, std::align_val_t, const std::nothrow_t&) no
 
 extern "C" {
 
-// Of objects that were compiled without -fno-threadsafe-statics. A static variable of a function has a guard, whose first byte says that the variable is there. [Itanium C++ ABI, 3.3.2] There is one
-// thread in a local store: the second byte is a constructor that has come to its own variable.
+// For objects that were compiled without -fno-threadsafe-statics. A static variable of a function has a guard, whose first byte says that
+// the variable is there. [Itanium C++ ABI, 3.3.2] There is one thread in a local store: if the second byte is set, a constructor has come
+// to its own variable.
 
 static uint8_t& is_there(uint64_t* guard) { return reinterpret_cast<uint8_t*>(guard)[0]; }
 static uint8_t& is_begun(uint64_t* guard) { return reinterpret_cast<uint8_t*>(guard)[1]; }

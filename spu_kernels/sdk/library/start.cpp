@@ -15,7 +15,8 @@ extern Function* const softcell_constructors_end[] __attribute__((visibility("hi
 extern Function* const softcell_destructors[] __attribute__((visibility("hidden")));
 extern Function* const softcell_destructors_end[] __attribute__((visibility("hidden")));
 
-/// The program's main, whatever its parameters: what it does not take is left alone. Numbers and vectors come in registers of different kinds.
+/// The program's main, whatever its parameters: what it does not take is left alone. Numbers and vectors come in registers of different
+/// kinds.
 using Words = softcell_sdk::Raw<unsigned int>;
 int softcell_main(uint64_t, uint64_t, uint64_t, uint64_t, Words, Words, Words)
     __attribute__((visibility("hidden")));

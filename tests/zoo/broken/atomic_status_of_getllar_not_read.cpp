@@ -1,7 +1,7 @@
 // rule: atomic-status-not-read
 // names: getllar
 // twin: legal/atomic_increment
-// flavour: checked
+// build: checked
 // Goes from getllar to putllc without reading the status between: the line may not be there yet.
 #include <spu_intrinsics.h>
 #include <spu_mfcio.h>

@@ -1,7 +1,7 @@
 // rule: atomic-status-not-read
 // names: putllc
 // twin: legal/atomic_increment
-// flavour: checked
+// build: checked
 // Ends without looking whether its putllc has stored anything.
 #include <spu_intrinsics.h>
 #include <spu_mfcio.h>

@@ -1,6 +1,6 @@
 // rule: load-never-written
 // twin: legal/bss_written_first
-// flavour: checked
+// build: checked
 // Counts on a variable without initial value to be zero: bss holds what the last job left there.
 #include <spu_intrinsics.h>
 #include <spu_mfcio.h>

@@ -1,7 +1,7 @@
 // rule: commands-outstanding
 // names: put
 // twin: legal/one_wait_for_two_tags
-// flavour: checked
+// build: checked
 // Waits for one of its two tags.
 #include <spu_intrinsics.h>
 #include <spu_mfcio.h>

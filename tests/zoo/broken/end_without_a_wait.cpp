@@ -1,7 +1,7 @@
 // rule: commands-outstanding
 // names: put
 // twin: legal/wait_at_the_end
-// flavour: checked
+// build: checked
 // Returns while its results are on their way: whoever reads them may be too early.
 #include <spu_intrinsics.h>
 #include <spu_mfcio.h>

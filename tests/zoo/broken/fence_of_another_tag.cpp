@@ -1,7 +1,7 @@
 // rule: transfers-overlap
 // names: getf
 // twin: legal/reuse_after_the_barrier
-// flavour: checked
+// build: checked
 // Has a fence, but the put before it has another tag: a fence orders its own tag group only.
 #include <spu_intrinsics.h>
 #include <spu_mfcio.h>

@@ -1,7 +1,7 @@
 // rule: outside-objects
 // names: get
 // twin: legal/last_element_of_an_object
-// flavour: checked
+// build: checked
 // Fetches a block of 256 bytes into a buffer of 128.
 #include <spu_intrinsics.h>
 #include <spu_mfcio.h>

@@ -1,7 +1,7 @@
 // rule: write-to-code
 // names: get
 // twin: legal/constant_read
-// flavour: checked
+// build: checked
 // Fetches settings over the constants that stand for them.
 #include <spu_intrinsics.h>
 #include <spu_mfcio.h>

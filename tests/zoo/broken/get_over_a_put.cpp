@@ -1,7 +1,7 @@
 // rule: transfers-overlap
 // names: get
 // twin: legal/reuse_after_the_fence
-// flavour: checked
+// build: checked
 // Fetches the next block into a buffer that is still being put: same tag, but no fence.
 #include <spu_intrinsics.h>
 #include <spu_mfcio.h>

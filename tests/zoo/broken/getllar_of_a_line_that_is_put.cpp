@@ -1,7 +1,7 @@
 // rule: transfers-overlap
 // names: getllar
 // twin: legal/line_after_the_wait
-// flavour: checked
+// build: checked
 // Stores a line by a put, which is queued, and looks at it at once: getllar does not wait for the queue.
 #include <spu_intrinsics.h>
 #include <spu_mfcio.h>

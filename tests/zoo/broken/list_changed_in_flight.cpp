@@ -1,7 +1,7 @@
 // rule: list-in-flight
 // names: getl
 // twin: legal/list_patched_behind_a_stall
-// flavour: checked
+// build: checked
 // Builds its next list where the last one is still being read by the MFC.
 #include <spu_intrinsics.h>
 #include <spu_mfcio.h>

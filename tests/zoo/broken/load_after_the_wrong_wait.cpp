@@ -1,7 +1,7 @@
 // rule: load-in-flight
 // names: get
 // twin: legal/double_buffer
-// flavour: checked
+// build: checked
 // Swaps the tags of its two buffers: waits for the second and reads the first.
 #include <spu_intrinsics.h>
 #include <spu_mfcio.h>

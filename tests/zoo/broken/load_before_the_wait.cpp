@@ -1,7 +1,7 @@
 // rule: load-in-flight
 // names: get
 // twin: legal/load_after_the_wait
-// flavour: checked
+// build: checked
 // Reads what it has fetched before waiting for it: on a quiet machine the bytes are often there already.
 #include <spu_intrinsics.h>
 #include <spu_mfcio.h>

@@ -1,6 +1,6 @@
 // rule: outside-objects
 // twin: legal/last_element_of_an_object
-// flavour: checked
+// build: checked
 // Reads the fourth row of a table of one row: local store that belongs to nobody.
 #include <spu_intrinsics.h>
 #include <spu_mfcio.h>

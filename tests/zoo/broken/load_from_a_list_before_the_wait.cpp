@@ -1,7 +1,7 @@
 // rule: load-in-flight
 // names: getl
 // twin: legal/list_at_multiple_of_8
-// flavour: checked
+// build: checked
 // Reads the second of two blocks that a list gathers, before the wait.
 #include <spu_intrinsics.h>
 #include <spu_mfcio.h>

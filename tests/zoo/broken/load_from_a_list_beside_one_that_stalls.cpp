@@ -1,7 +1,7 @@
 // rule: load-in-flight
 // names: getl
 // twin: legal/list_at_multiple_of_8
-// flavour: checked
+// build: checked
 // Takes the stall of one list for news of another of its tag, whose own stall bit, on the last element, says
 // nothing.
 #include <spu_intrinsics.h>

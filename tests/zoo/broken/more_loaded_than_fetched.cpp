@@ -1,6 +1,6 @@
 // rule: load-never-written
 // twin: legal/bss_written_first
-// flavour: checked
+// build: checked
 // Fetches half a buffer and works on all of it.
 #include <spu_intrinsics.h>
 #include <spu_mfcio.h>

@@ -1,7 +1,7 @@
 // rule: put-never-written
 // names: put
 // twin: legal/put_what_was_written
-// flavour: checked
+// build: checked
 // Fills half of its buffer and puts all of it.
 #include <spu_intrinsics.h>
 #include <spu_mfcio.h>

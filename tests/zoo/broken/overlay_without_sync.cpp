@@ -1,12 +1,12 @@
 // rule: code-without-sync
 // names: overlay
 // twin: legal/overlay_with_sync
-// flavour: checked
+// build: checked
 // Fetches a routine into a buffer, as an overlay is, and calls it without a sync.
 #include <spu_intrinsics.h>
 #include <spu_mfcio.h>
 
-// The checked flavour is not to call anything in it: it runs where it is copied.
+// The checked image is not to call anything in it: it runs where it is copied.
 __attribute__((noinline, aligned(128), no_sanitize("thread", "kernel-address"))) static uint32_t routine(
     uint32_t x) {
   return 2 * x + spu_readchcnt(SPU_RdSigNotify1);

@@ -1,7 +1,7 @@
 // rule: store-in-flight
 // names: put
 // twin: legal/wait_in_the_function_of_the_buffer
-// flavour: checked
+// build: checked
 // Sends a message from a variable of a function that returns before the put is complete: what is called next stores there.
 #include <spu_intrinsics.h>
 #include <spu_mfcio.h>

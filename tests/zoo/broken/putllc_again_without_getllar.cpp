@@ -1,7 +1,7 @@
 // rule: putllc-without-reservation
 // names: putllc
 // twin: legal/atomic_increment
-// flavour: checked
+// build: checked
 // Tries putllc again without fetching the line again: the reservation was given up by the first one.
 #include <spu_intrinsics.h>
 #include <spu_mfcio.h>

@@ -1,7 +1,7 @@
 // rule: putllc-without-reservation
 // names: putllc
 // twin: legal/atomic_increment
-// flavour: checked
+// build: checked
 // Reserves the lock and stores the data behind it.
 #include <spu_intrinsics.h>
 #include <spu_mfcio.h>

@@ -1,7 +1,7 @@
 // rule: reservation-not-used
 // names: getllar
 // twin: legal/line_changed_and_stored
-// flavour: checked
+// build: checked
 // Changes a counter in its copy of the line and forgets to store it.
 #include <spu_intrinsics.h>
 #include <spu_mfcio.h>

@@ -1,6 +1,6 @@
 // rule: outside-objects
 // twin: legal/last_element_of_an_object
-// flavour: checked
+// build: checked
 // Writes the fourth row of a table of one row: harmless until something is linked there.
 #include <spu_intrinsics.h>
 #include <spu_mfcio.h>

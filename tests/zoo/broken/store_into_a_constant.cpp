@@ -1,6 +1,6 @@
 // rule: write-to-code
 // twin: legal/constant_read
-// flavour: checked
+// build: checked
 // Takes the defaults themselves for the settings that may be changed: constants lie beside the code, and
 // nothing protects them.
 #include <spu_intrinsics.h>

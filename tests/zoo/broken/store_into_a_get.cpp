@@ -1,7 +1,7 @@
 // rule: store-in-flight
 // names: get
 // twin: legal/load_after_the_wait
-// flavour: checked
+// build: checked
 // Clears its buffer after it has started to fetch into it: either may win.
 #include <spu_intrinsics.h>
 #include <spu_mfcio.h>

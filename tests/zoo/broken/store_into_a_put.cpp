@@ -1,7 +1,7 @@
 // rule: store-in-flight
 // names: put
 // twin: legal/reuse_after_the_wait
-// flavour: checked
+// build: checked
 // Prepares the next message in the buffer from which the last one is still leaving.
 #include <spu_intrinsics.h>
 #include <spu_mfcio.h>

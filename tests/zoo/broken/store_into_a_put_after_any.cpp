@@ -1,7 +1,7 @@
 // rule: store-in-flight
 // names: put
 // twin: legal/reuse_after_the_wait
-// flavour: checked
+// build: checked
 // Waits for any of two tags and uses both buffers again.
 #include <spu_intrinsics.h>
 #include <spu_mfcio.h>

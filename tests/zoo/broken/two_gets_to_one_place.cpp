@@ -1,7 +1,7 @@
 // rule: transfers-overlap
 // names: get
 // twin: legal/reuse_after_the_fence
-// flavour: checked
+// build: checked
 // Fetches two blocks to the same place, the second of which it wants: they may arrive in any order.
 #include <spu_intrinsics.h>
 #include <spu_mfcio.h>

@@ -1,7 +1,7 @@
 // rule: tag-without-command
 // names: tag 4
 // twin: legal/one_wait_for_two_tags
-// flavour: checked
+// build: checked
 // Waits once more, for a tag with which nothing was issued: probably the wrong one.
 #include <spu_intrinsics.h>
 #include <spu_mfcio.h>

@@ -1,5 +1,5 @@
 // keeps: lsa-out-of-range
-// flavour: plain
+// build: plain
 // The last 128 bytes of the local store, which are the stack's first: nothing reaches past them.
 #include <spu_intrinsics.h>
 #include <spu_mfcio.h>

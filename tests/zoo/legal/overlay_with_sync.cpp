@@ -3,7 +3,7 @@
 #include <spu_intrinsics.h>
 #include <spu_mfcio.h>
 
-// The checked flavour is not to call anything in it: it runs where it is copied.
+// The checked image is not to call anything in it: it runs where it is copied.
 __attribute__((noinline, aligned(128), no_sanitize("thread", "kernel-address"))) static uint32_t routine(
     uint32_t x) {
   return 2 * x + spu_readchcnt(SPU_RdSigNotify1);

@@ -16,10 +16,10 @@ namespace {
 constexpr std::string_view kSuffix = ".spu.elf";
 constexpr std::string_view kCheckedSuffix = ".checked.spu.elf";
 
-/// The file that holds the wanted flavour: one beside this file, or this file itself.
-std::filesystem::path flavour_of(const std::filesystem::path& file, bool checked) {
+/// The file that holds the wanted image: one beside this file, or this file itself.
+std::filesystem::path wanted_image(const std::filesystem::path& file, bool checked) {
   const std::string text = file.string();
-  if (!checked || text.ends_with(kCheckedSuffix) || spu_kernels::holds_checked_flavour(file)) return file;
+  if (!checked || text.ends_with(kCheckedSuffix) || spu_kernels::holds_checked_image(file)) return file;
   if (!text.ends_with(kSuffix)) {
     throw std::runtime_error(
         "--checked " + text +
@@ -48,7 +48,7 @@ std::string built_in_names() {
   return names;
 }
 
-/// A program for the SPU has no flavours, because the interpreter sees each access by itself.
+/// A program for the SPU has no checked image, because the interpreter sees each access by itself.
 bool is_spu_file(const std::filesystem::path& file) {
   constexpr std::size_t kHeaderBytes = 52;  // of a 32-bit ELF file
   std::array<char, kHeaderBytes> header{};
@@ -83,7 +83,7 @@ std::vector<std::string> built_in_kernels(bool checked) {
 std::optional<std::filesystem::path> find_kernel_file(const std::string& image, bool checked) {
   std::error_code ignored;
   if (!std::filesystem::exists(image, ignored)) return std::nullopt;
-  return flavour_of(image, checked && !is_spu_file(image));
+  return wanted_image(image, checked && !is_spu_file(image));
 }
 
 ls_sim::KernelImage load_kernel_file(const std::string& image, bool checked,

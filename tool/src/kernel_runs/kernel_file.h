@@ -26,7 +26,7 @@ std::vector<std::string> built_in_kernels(bool checked);
 using spu_kernels::load_kernel;
 
 /// The file that load_kernel_file() reads; none for a kernel of this project.
-/// @throws std::runtime_error  one sentence: there is no such flavour.
+/// @throws std::runtime_error  one sentence: there is no checked image.
 std::optional<std::filesystem::path> find_kernel_file(const std::string& image, bool checked);
 
 /// Loads a kernel by the path of its .spu.elf file, by the path of a program built for the SPU, or by name if it is a kernel of this
@@ -34,7 +34,7 @@ std::optional<std::filesystem::path> find_kernel_file(const std::string& image, 
 /// @param checked  load its checked image: NAME.checked.spu.elf beside NAME.spu.elf. A program built for the SPU
 ///                 needs none.
 /// @param machine  refuse an image for another machine.
-/// @throws std::runtime_error  one sentence: there is no such file or kernel, no such flavour, it is for another machine, or it cannot be
+/// @throws std::runtime_error  one sentence: there is no such file or kernel, no checked image, it is for another machine, or it cannot be
 /// loaded.
 ls_sim::KernelImage load_kernel_file(const std::string& image, bool checked,
                                      std::optional<ls_sim::Machine> machine = {});

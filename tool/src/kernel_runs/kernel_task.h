@@ -81,8 +81,8 @@ std::chrono::milliseconds parse_deadline(const std::string& text);
 /// The files of --out and --inout.
 std::vector<NamedFile> written_files(const KernelTask& task);
 
-/// The kernel image if it is a file, in both flavours if it is checked, and the files of --in.
-/// @throws std::runtime_error  one sentence: there is no such flavour.
+/// The kernel image if it is a file, with its checked image if that is wanted, and the files of --in.
+/// @throws std::runtime_error  one sentence: there is no checked image.
 std::vector<NamedFile> read_files(const KernelTask& task);
 
 /// Refuses mistakes that concern several options: two buffers with one name or one file, and arguments that name no buffer.

@@ -64,7 +64,7 @@ Words preprocessor_options(const Options& options, const std::filesystem::path& 
   return words;
 }
 
-/// The options without those of dependencies, which the other flavour has already written.
+/// The options without those of dependencies, which the other build has already written.
 Words without_dependencies(const Words& options) {
   Words words;
   for (std::size_t i = 0; i < options.size(); ++i) {
@@ -101,10 +101,10 @@ void say(const Options& options, const Words& command) {
   std::fprintf(stderr, "%s\n", text.c_str());
 }
 
-void compile_flavour(const Input& source, const std::filesystem::path& object, bool checked,
-                     const Words& preprocessor, const Options& options, const Places& places,
-                     ScratchFolder& scratch) {
-  // The compiler's messages are only printed for one flavour.
+void compile_build(const Input& source, const std::filesystem::path& object, bool checked,
+                   const Words& preprocessor, const Options& options, const Places& places,
+                   ScratchFolder& scratch) {
+  // The compiler's messages are only printed for one build.
   const auto go = [&](const Words& command) {
     say(options, command);
     if (source.file == kStandardInput) lseek(STDIN_FILENO, 0, SEEK_SET);
@@ -165,10 +165,9 @@ void Dependencies::join(const Options& options, const std::filesystem::path& dep
 
 void compile(const Input& source, const std::filesystem::path& object, const std::filesystem::path& dependent,
              const Options& options, const Places& places, ScratchFolder& scratch) {
-  compile_flavour(source, object, false, preprocessor_options(options, dependent), options, places, scratch);
+  compile_build(source, object, false, preprocessor_options(options, dependent), options, places, scratch);
   const auto checked = scratch.file("checked.o");
-  compile_flavour(source, checked, true, without_dependencies(options.preprocessor), options, places,
-                  scratch);
+  compile_build(source, checked, true, without_dependencies(options.preprocessor), options, places, scratch);
   add_section(object, kCheckedSection, checked);
 }
 

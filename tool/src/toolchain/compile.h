@@ -1,5 +1,5 @@
 #pragma once
-// Compiles sources to objects. An object contains both flavours of its code; the checked flavour, which calls softcell before each load and
+// Compiles sources to objects. An object contains both builds of its code; the checked one, which calls softcell before each load and
 // store, is in its section .softcell.checked.
 
 #include <filesystem>
@@ -14,7 +14,7 @@ namespace softcell::toolchain {
 
 inline constexpr const char kCheckedSection[] = ".softcell.checked";
 
-/// Standard input is read once; both flavours are compiled from what was read. Call it before compile().
+/// Standard input is read once; both builds are compiled from what was read. Call it before compile().
 void keep_standard_input(const Options& options, ScratchFolder& scratch);
 
 /// Compiles one source. @param dependent  what the dependencies of -MD are of: the object, or the program of which it becomes a part.

@@ -72,7 +72,7 @@ int embedspu(const Words& words) {
   require_program(input);
   ScratchFolder scratch;
   const auto source = scratch.file("program.s");
-  // The same as softcell_embed_spu_program() writes; the file itself contains its checked flavour and its name.
+  // The same as softcell_embed_spu_program() writes; the file itself contains its checked image and its name.
   std::ofstream(source) << ".section .data.rel.ro, \"aw\"\n.balign 8\n.global " << symbol << "\n.type "
                         << symbol << ", @object\n.size " << symbol << ", 40\n"
                         << symbol << ":\n.long 40, 0\n.quad .Limage, 0, 0, .Lname\n"

@@ -20,14 +20,14 @@ constexpr std::uint32_t kLeastStack = 4096, kMostStack = 0x20000;
 
 void append(Words& to, const Words& words) { to.insert(to.end(), words.begin(), words.end()); }
 
-/// Extracts the checked flavour of an object. @return  false: the object has none
+/// Extracts the checked build of an object. @return  false: the object has none
 bool extract_checked(const std::string& object, const std::filesystem::path& to) {
   const Words command{"objcopy", "--dump-section", std::string(kCheckedSection) + "=" + to.string(), object,
                       "/dev/null"};
   return run(command, true) == 0 && std::filesystem::exists(to);
 }
 
-/// Makes an archive of the checked flavours of an archive's members.
+/// Makes an archive of the checked builds of an archive's members.
 bool extract_checked_archive(const std::filesystem::path& archive, const std::filesystem::path& to,
                              ScratchFolder& scratch) {
   const std::filesystem::path members = scratch.file("members");
@@ -43,7 +43,7 @@ bool extract_checked_archive(const std::filesystem::path& archive, const std::fi
   return true;
 }
 
-/// The files replaced by their checked flavours. @return  none: `missing` has no checked flavour
+/// The files replaced by their checked builds. @return  none: `missing` has no checked build
 Words checked_files(const Words& files, ScratchFolder& scratch, std::string& missing) {
   Words checked;
   for (const std::string& file : files) {
@@ -60,10 +60,10 @@ Words checked_files(const Words& files, ScratchFolder& scratch, std::string& mis
   return checked;
 }
 
-/// Links one flavour. @param quiet  drops the linker's messages. @param budget  for image and stack. @return  the linker's status.
-int link_flavour(const Words& files, const std::filesystem::path& output, bool checked, std::uint32_t stack,
-                 const Options& options, const Places& places, bool quiet,
-                 std::uint32_t budget = kLocalStoreBytes) {
+/// Links one build. @param quiet  drops the linker's messages. @param budget  for image and stack. @return  the linker's status.
+int link_build(const Words& files, const std::filesystem::path& output, bool checked, std::uint32_t stack,
+               const Options& options, const Places& places, bool quiet,
+               std::uint32_t budget = kLocalStoreBytes) {
   Words command{settings::kLinker,
                 "-m",
                 "elf32_x86_64",
@@ -114,7 +114,7 @@ std::uint32_t stack_beside(const std::filesystem::path& image) {
 /// Call it after a link that has failed. If the program is too large, it says so with numbers; else the linker says what is wrong.
 void refuse_if_too_large(const Words& files, const std::filesystem::path& output, std::uint32_t stack,
                          const Options& options, const Places& places) {
-  if (link_flavour(files, output, false, stack, options, places, true, kNoBudget) != 0) return;
+  if (link_build(files, output, false, stack, options, places, true, kNoBudget) != 0) return;
   const std::uint64_t image = end_of(output), all = image + stack;
   std::filesystem::remove(output);
   if (all <= kLocalStoreBytes) return;
@@ -128,17 +128,17 @@ std::uint32_t least_stack(bool checked, const Options& options) {
   return options.stack_bytes.value_or(kLeastStack) + (checked ? settings::kCheckedStackBytes : 0);
 }
 
-/// Links a flavour with the largest stack for which there is room. @return  the linker's status.
+/// Links a build with the largest stack for which there is room. @return  the linker's status.
 int link_with_stack(const Words& files, const std::filesystem::path& output, bool checked,
                     const Options& options, const Places& places, bool quiet) {
   const std::uint32_t least = least_stack(checked, options);
   // Quiet, because the link that follows prints the linker's messages.
-  const int status = link_flavour(files, output, checked, least, options, places, true);
+  const int status = link_build(files, output, checked, least, options, places, true);
   if (status != 0 && !quiet) refuse_if_too_large(files, output, least, options, places);
   if (status != 0 || options.stack_bytes)
-    return link_flavour(files, output, checked, least, options, places, quiet);
+    return link_build(files, output, checked, least, options, places, quiet);
   const std::uint32_t stack = stack_beside(output);
-  return link_flavour(files, output, checked, stack, options, places, quiet);
+  return link_build(files, output, checked, stack, options, places, quiet);
 }
 
 void link_object(const Words& files, const std::filesystem::path& output) {
@@ -176,8 +176,8 @@ void link(const Words& files, const std::filesystem::path& output, const Options
     std::string why = missing + " has none";
     if (missing.empty()) {
       // Where it does not link without a budget either, the linker says why.
-      const bool links = link_flavour(checked, checked_output, true, least_stack(true, options), options,
-                                      places, false, kNoBudget) == 0;
+      const bool links = link_build(checked, checked_output, true, least_stack(true, options), options,
+                                    places, false, kNoBudget) == 0;
       why = links ? "it does not fit into a local store" : "it does not link";
     }
     std::fprintf(stderr, "softcell-spu-ld: note: %s gets no checked image: %s\n", output.c_str(),

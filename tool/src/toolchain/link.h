@@ -1,5 +1,5 @@
 #pragma once
-// Links objects to a program: an image of a local store, with its checked flavour in a section.
+// Links objects to a program: an image of a local store, with its checked image in a section.
 
 #include <filesystem>
 

@@ -119,7 +119,7 @@ int run_command(const std::string& command, Words words) {
   if (tool == kTools.end())
     throw std::invalid_argument("call it by one of its names, softcell-spu-gcc for example");
   if (command == "softcell-spu-strip") {
-    // A program has few symbols, and softcell reads them, so they stay; strip keeps both flavours.
+    // A program has few symbols, and softcell reads them, so they stay; strip keeps both builds.
     words.insert(words.begin(), {"--strip-debug", "--keep-section=.softcell.*"});
     std::erase(words, "-s");
     std::erase(words, "--strip-all");

@@ -169,8 +169,11 @@ class Box2dSoftBodies {
 
   /// The first half of step(), for a program that calls b2World::Step() itself between both halves, with the same length.
   /// @param step  as step()
+  /// @throws std::invalid_argument, std::runtime_error  as step(); end_step() is not called then
+  /// @pre end_step() was called after the last begin_step(), and b2World::Step() is not running
   void begin_step(float step);
-  void end_step(float step);  ///< the second half of step(); the same length as in begin_step()
+  /// The second half of step(). @param step  as in begin_step()  @pre begin_step() was called, and b2World::Step() is not running
+  void end_step(float step);
 
   /// Lets the solver begin the next step, of `step` seconds, while the caller does something else. If bodies change after
   /// all, or the step has another length, softcell discards that work and does it again. The result is the same, except

@@ -30,7 +30,7 @@ struct CollisionFilter {
   int mask = -1;
 
   /// Whether two bodies with these filters may touch.
-  bool lets(const CollisionFilter& other) const {
+  bool may_touch(const CollisionFilter& other) const {
     return (group & other.mask) != 0 && (other.group & mask) != 0;
   }
 };

@@ -78,7 +78,7 @@ class SoftBody {
   /// The positions as x y z 0 in metres, 16 bytes each, ready to be copied to SPEs or to a graphics card.
   std::span<const Eigen::Vector4f> padded_positions() const requires(kDimension == 3) { return padded_; }
 
-  // For solvers, in each time step of `step` seconds: pull() or take_pulled(), then flow().
+  // For solvers, in each time step of `step` seconds: pull() or set_pulled_velocities(), then flow().
 
   /// Shape matching and damping: changes velocities, conserves momentum and angular momentum, moves nothing.
   /// @throws std::runtime_error  a particle is NaN or infinite; nothing has changed then.
@@ -88,7 +88,7 @@ class SoftBody {
   /// solver has lost by rounding are returned.
   /// @param velocity_of  returns particle i's velocity in m/s for each i
   template <typename VelocityOf>
-  void take_pulled(const VelocityOf& velocity_of) {
+  void set_pulled_velocities(const VelocityOf& velocity_of) {
     for (std::size_t i = 0; i < pulled_.size(); ++i) pulled_[i] = velocity_of(i);
     end_pull();
   }

@@ -11,14 +11,14 @@ namespace softcell::spu_kernels {
 struct ImageFile {
   std::string_view name;
   std::span<const std::byte> elf;          ///< for ls_sim::load_image()
-  std::span<const std::byte> checked_elf;  ///< its instrumented flavour; empty for one that would not fit
+  std::span<const std::byte> checked_elf;  ///< its checked image; empty for one that would not fit
   std::span<const std::byte> spu_elf;      ///< the executable for the SPU, for ls_sim::load_spu_program()
 };
 
 /// All of them, by name.
 std::span<const ImageFile> image_files();
 
-/// The file of the kernel of that name, or of its checked flavour. @throws std::runtime_error  there is none.
+/// The file of the kernel of that name, or of its checked image. @throws std::runtime_error  there is none.
 std::span<const std::byte> image_file(std::string_view name, bool checked);
 
 /// The executable for the SPU of the kernel of that name. @throws std::runtime_error  there is none.

@@ -1,5 +1,6 @@
 #pragma once
-// Words in main storage that SPEs and the PPU side share: counters, locks, conditions and completions. [SDK for Multicore Acceleration, sync library] documented
+// Words in main storage that SPEs and the PPU side share: counters, locks, conditions and completions. [SDK for Multicore Acceleration,
+// sync library] documented
 //
 // Each function takes the effective address of an aligned word and works on its line by getllar and putllc, so that at most one
 // reservation is used. What waits sleeps until the reservation is lost. ppu/libspe2/include/libsync.h works on the same words.

@@ -2,9 +2,9 @@
 // Functions of floats, and those of doubles by the same arithmetic. [C17, 7.12]
 //
 // All are computed in double precision and rounded once. The error of a float function of one argument is at most 0.50005 units in
-// the last place, measured for all 2^32 arguments (`ci/float-functions`), with these rules: denormal arguments and results are 0; there are no NaN and no
-// infinities in single precision, so what is not defined gives 0, what is too large the largest float, and an argument of 2^128 or more counts
-// as the largest float. An SPU built from the same source has the same bits.
+// the last place, measured for all 2^32 arguments (`ci/float-functions`), with these rules: denormal arguments and results are 0; there
+// are no NaN and no infinities in single precision, so what is not defined gives 0, what is too large the largest float, and an argument
+// of 2^128 or more counts as the largest float. An SPU built from the same source has the same bits.
 //
 // Of double functions sqrt(), pow(), log10() and hypot() err by at most 0.52 units in the last place, so that results that are whole
 // numbers are exact. The others have some twelve digits; sin(), cos() and tan() of doubles from 2^20 on take the first 24 bits of their

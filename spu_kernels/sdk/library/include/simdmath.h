@@ -1,6 +1,6 @@
 #pragma once
-// What programs commonly use of the SIMD math library: functions of four floats or two doubles at once. [SDK for Multicore Acceleration, SIMD math
-// library] documented
+// What programs commonly use of the SIMD math library: functions of four floats or two doubles at once. [SDK for Multicore Acceleration,
+// SIMD math library] documented
 //
 // Those of one instruction or a few are as the SPU computes them, with an error of 1 or 2 units in the last place; the others are math.h's,
 // lane by lane.

@@ -1,0 +1,153 @@
+#pragma once
+// What the kernel `contact_find` keeps in its local store: a task, two bodies, what is near of them, candidates and contacts; and the
+// transfers that bring and fetch them.
+
+#include <spu_intrinsics.h>
+#include <spu_mfcio.h>
+
+#include "common/dma.h"
+#include "contact_find_job.h"
+#include "contacts/body_in_store.h"
+#include "contacts/deformed_cell.h"
+#include "contacts/embedded_contact.h"
+
+namespace softcell::spu {
+namespace {  // a part of contact_find.cpp, which alone includes it
+
+enum Tag : uint32_t { kTagTask = 0, kTagIn = 1, kTagOut = 2 };
+
+#ifdef SOFTCELL_CHECKED  // its code is twice as large
+constexpr uint32_t kBatch = 1, kInverses = 8, kContactBatch = 4;
+#else
+constexpr uint32_t kBatch = 16;         // tasks that are fetched together
+constexpr uint32_t kInverses = 64;      // that are kept
+constexpr uint32_t kContactBatch = 64;  // contacts that go to main memory together
+#endif
+constexpr uint32_t kGroups = 4;  // of a FindCandidate
+/// Something that is in the local store already.
+struct Part {
+  uint64_t ea;  // 0: nothing
+  uint32_t offset;
+};
+
+/// Cells of a body that are near the other one: their boxes, as in FindBoxes but close together.
+struct NearCells {
+  uint32_t count;
+  alignas(16) float box[6][kFindMaxNear + 4];
+  vec_float4 block[kFindMaxNear / 16]
+                  [6];  // of 16 cells: lane i is around the cells i, i + 4, i + 8 and i + 12
+  uint16_t cell[kFindMaxNear];
+};
+static_assert(kFindMaxNear % 16 == 0, "whole blocks");
+
+/// Of near cells, as RoughInverse, a cell to a lane: what is no farther from the three pairs of planes than a distance, and from the
+/// plane below the surface, may be in the cell.
+struct NearBounds {
+  enum Row : uint32_t {
+    kMiddle = 0,   // x y z
+    kRow1 = 3,     // x y z of each of the inverse's rows
+    kReach = 12,   // by s1 s2 s3
+    kLength = 15,  // of the three rows, 1/m: how much of reach a metre is
+    kSlope = 18,   // x y z: of the plane below the field, in the world
+    kLimit = 21,   // of what it says
+    kSteep = 22,   // length of the slope
+    kRows = 23
+  };
+  alignas(16) float row[kRows][kFindMaxNear + 4];
+};
+
+/// Everything this kernel keeps in local store beside its code and stack.
+struct alignas(128) LocalStoreMap {
+  FindJob job;
+  FindTask tasks[kBatch];
+  FindResult results[kBatch];
+  FindResult result;
+  alignas(128) char bytes[kFindMaxBytes];  // model and state of a, then those of b
+  Part model[2], state[2];
+  alignas(128) SolvedContact contacts[kContactBatch];  // found last
+  uint32_t contacts_sent;                              // before them
+  uint32_t contacts_most;                              // that the task may have
+  uint64_t contacts_ea;                                // of the task
+  NearCells near[2];                                   // of a, of b
+  uint16_t inverse_of[kInverses];                      // whose it is
+  uint16_t meets[kFindMaxNear];
+  alignas(128) FindCandidate candidates[kFindMaxCandidates];
+  uint32_t candidate_count;
+  union {
+    alignas(16) float along[2][kFindMaxParticles];  // places of particles between the two bodies
+    NearBounds bounds;                              // behind that
+    RoughInverse inverse[kInverses];  // where candidates are known: of a cell at its number modulo kInverses
+  };
+  uint32_t under_way;  // tag groups with transfers
+};
+LocalStoreMap ls;
+
+/// Where a body's parts are.
+BodyInStore body_in_store(uint32_t model, uint32_t state, const FindBody& body) {
+  const auto at = [](uint32_t offset) { return reinterpret_cast<const vec_float4*>(ls.bytes + offset); };
+  const uint32_t ends = state + (body.cell_count + 3) / 4 * static_cast<uint32_t>(sizeof(FindBoxes));
+  return {reinterpret_cast<const CellAtRest*>(ls.bytes + model),
+          at(model + body.cell_count * static_cast<uint32_t>(sizeof(FindCell))),
+          at(state),
+          at(ends),
+          at(ends + body.particle_count * 16),
+          body.cell_count,
+          body.particle_count,
+          body.spacing};
+}
+
+/// Tasks come in an order in which much is there already.
+inline bool is_there(Part& part, uint64_t ea, uint32_t offset) {
+  const bool is = part.ea == ea && part.offset == offset;
+  part = {ea, offset};
+  return is;
+}
+
+void fetch_model(Part& part, uint32_t offset, const FindBody& body) {
+  if (is_there(part, body.cells_ea, offset)) return;
+  const uint32_t cells = body.cell_count * static_cast<uint32_t>(sizeof(FindCell));
+  get_large(ls.bytes + offset, body.cells_ea, cells, kTagIn);
+  get_large(ls.bytes + offset + cells, body.groups_ea,
+            body.group_count * static_cast<uint32_t>(sizeof(FindGroup)), kTagIn);
+  ls.under_way |= 1u << kTagIn;
+}
+
+void fetch_state(Part& part, uint32_t offset, const FindBody& body) {
+  if (is_there(part, body.state_ea, offset)) return;
+  get_large(ls.bytes + offset, body.state_ea, find_state_bytes(body), kTagIn);
+  ls.under_way |= 1u << kTagIn;
+}
+
+/// In whole quadwords.
+inline uint32_t bytes_of_candidates(uint32_t count) {
+  return (count + 1) / 2 * 2 * static_cast<uint32_t>(sizeof(FindCandidate));
+}
+
+/// Until all transfers of bodies and contacts are complete.
+void wait_for_all() {
+  if (ls.under_way != 0) wait_for_tags(ls.under_way);
+  ls.under_way = 0;
+}
+
+/// The contacts in the local store to main memory.
+void send_contacts() {
+  const uint32_t count = ls.result.count - ls.contacts_sent;
+  if (count == 0) return;
+  constexpr uint32_t kBytes = sizeof(SolvedContact);
+  static_assert(kContactBatch * kBytes <= 16384, "one command");
+  mfc_put(ls.contacts, ls.contacts_ea + ls.contacts_sent * kBytes, count * kBytes, kTagOut, 0, 0);
+  ls.under_way |= 1u << kTagOut;
+  ls.contacts_sent = ls.result.count;
+}
+
+/// Where the next contact goes.
+SolvedContact& room_for_contact() {
+  if (ls.result.count - ls.contacts_sent == kContactBatch) {
+    send_contacts();
+    wait_for_all();
+  }
+  return ls.contacts[ls.result.count - ls.contacts_sent];
+}
+
+}  // namespace
+}  // namespace softcell::spu
