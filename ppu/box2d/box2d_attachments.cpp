@@ -34,6 +34,9 @@ AttachmentFrame<2> frame_of(const b2Transform& pose) {
   return frame;
 }
 
+/// Whether Box2D simulates a rigid body's own motion.
+bool is_simulated(const b2Body& rigid) { return rigid.IsEnabled() && rigid.GetType() == b2_dynamicBody; }
+
 }  // namespace
 
 bool Box2dAttachments::may_touch(const b2Body& a, const b2Body& b) const {
@@ -229,9 +232,11 @@ std::uint32_t Box2dAttachments::number_of(b2Body& rigid, float step) {
   if (known != rigid_bodies_.end()) return static_cast<std::uint32_t>(known - rigid_bodies_.begin());
   AttachedRigid2d& added = rigids_.emplace_back();
   added.centre = to_eigen(rigid.GetWorldCenter());
-  added.velocity = to_eigen(rigid.GetLinearVelocity());
-  added.spin = rigid.GetAngularVelocity();
-  if (rigid.GetType() == b2_dynamicBody) {
+  if (rigid.IsEnabled()) {  // otherwise it stands still
+    added.velocity = to_eigen(rigid.GetLinearVelocity());
+    added.spin = rigid.GetAngularVelocity();
+  }
+  if (is_simulated(rigid)) {
     const VelocityGain gain = velocity_gain(rigid, world_.GetGravity(), step);
     added.velocity += to_eigen(gain.linear);
     added.spin += gain.angular;
@@ -246,7 +251,7 @@ std::uint32_t Box2dAttachments::number_of(b2Body& rigid, float step) {
 void Box2dAttachments::move_rigids(float step) const {
   for (std::size_t i = 0; i < rigids_.size(); ++i) {
     b2Body& rigid = *rigid_bodies_[i];
-    if (rigid.GetType() != b2_dynamicBody) continue;
+    if (!is_simulated(rigid)) continue;
     const VelocityGain gain = velocity_gain(rigid, world_.GetGravity(), step);
     rigid.SetLinearVelocity(to_box2d(rigids_[i].velocity) - gain.linear);
     rigid.SetAngularVelocity(rigids_[i].spin - gain.angular);

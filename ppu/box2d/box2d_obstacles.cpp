@@ -108,14 +108,16 @@ std::uint64_t look_of(const b2Body& body) {
   return hash.value();
 }
 
+/// A disabled body stands still, whatever its velocity, and its fixtures have no boxes.
 bool is_under_way(const b2Body& body) {
-  return body.IsAwake() && (body.GetLinearVelocity().LengthSquared() > 0 || body.GetAngularVelocity() != 0);
+  return body.IsEnabled() && body.IsAwake() &&
+         (body.GetLinearVelocity().LengthSquared() > 0 || body.GetAngularVelocity() != 0);
 }
 
 /// Whether nothing moves a body but the program by its place.
 bool may_be_moved_by_place(const b2Body& body) {
-  return body.GetType() != b2_dynamicBody && body.GetLinearVelocity().LengthSquared() == 0 &&
-         body.GetAngularVelocity() == 0;
+  return body.IsEnabled() && body.GetType() != b2_dynamicBody &&
+         body.GetLinearVelocity().LengthSquared() == 0 && body.GetAngularVelocity() == 0;
 }
 
 Pose as_pose(const b2Transform& pose) {
@@ -353,18 +355,18 @@ std::uint32_t Box2dObstacles::rigid_of(b2Body& body) {
   ContactRigid rigid;
   rigid.number = known.number;
   rigid.centre = lifted(body.GetWorldCenter());
-  const VelocityGain gain = gain_of(body);
-  rigid.velocity = lifted(body.GetLinearVelocity() + gain.linear);
-  rigid.spin = {0, 0, body.GetAngularVelocity() + gain.angular};
+  if (body.IsEnabled()) {
+    const VelocityGain gain = gain_of(body);
+    rigid.velocity = lifted(body.GetLinearVelocity() + gain.linear);
+    rigid.spin = {0, 0, body.GetAngularVelocity() + gain.angular};
+  }
   if (const std::optional<MovedByPlace>& moved = known.motion) {
     rigid.centre = moved->from.position;
     rigid.velocity = moved->velocity;
     rigid.spin = moved->spin;
   }
   rigid.friction = 1;  // each fixture has its own
-  for (const b2Fixture* fixture = body.GetFixtureList(); fixture != nullptr; fixture = fixture->GetNext())
-    rigid.restitution = std::max(rigid.restitution, fixture->GetRestitution());
-  if (body.GetType() == b2_dynamicBody) {
+  if (body.IsEnabled() && body.GetType() == b2_dynamicBody) {
     rigid.inverse_mass = inverse_mass_of(body);
     rigid.inverse_inertia(2, 2) = inverse_inertia_of(body);
   }
@@ -425,6 +427,7 @@ Obstacle Box2dObstacles::placed_with(b2Fixture& fixture) {
   Obstacle obstacle;
   obstacle.rigid = rigid_of(*fixture.GetBody());
   obstacle.friction = std::sqrt(fixture.GetFriction());
+  obstacle.restitution = fixture.GetRestitution();
   obstacle.position = lifted(pose.p);
   obstacle.rotation << pose.q.c, -pose.q.s, 0, pose.q.s, pose.q.c, 0, 0, 0, 1;
   return obstacle;

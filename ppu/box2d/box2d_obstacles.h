@@ -13,6 +13,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "ppu/box2d/box2d_body.h"
 #include "ppu/surfaces/moved_by_place.h"
 #include "ppu/surfaces/obstacle.h"
 #include "softcell/soft_bodies/contact.h"

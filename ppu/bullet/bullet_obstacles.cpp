@@ -317,7 +317,6 @@ std::uint32_t BulletObstacles::rigid_of(btCollisionObject& object) {
   rigid.number = static_cast<std::uint32_t>(object.getBroadphaseHandle()->m_uniqueId);
   rigid.centre = to_eigen(object.getWorldTransform().getOrigin());
   rigid.friction = object.getFriction();
-  rigid.restitution = object.getRestitution();
   if (const MovedByPlace* const moved = moved_by_place_of(object)) {
     rigid.centre = moved->from.position;
     rigid.velocity = moved->velocity;
@@ -352,6 +351,7 @@ void BulletObstacles::add_shape(const btCollisionShape& shape, const btTransform
                                 std::vector<std::uint32_t>& indices) {
   Obstacle obstacle;
   obstacle.rigid = rigid;
+  obstacle.restitution = objects_[rigid]->getRestitution();
   obstacle.part = part;
   obstacle.position = to_eigen(pose.getOrigin());
   obstacle.rotation = to_eigen(pose.getBasis());

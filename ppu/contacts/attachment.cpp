@@ -27,6 +27,8 @@ void validate(const AttachmentSettings<kDimension>& s) {
     if (s.kind != AttachmentKind::kRope)
       throw std::invalid_argument("an attachment has a length and is no rope; only ropes have one");
   }
+  if (s.point && s.kind == AttachmentKind::kWeld)
+    throw std::invalid_argument("an attachment has a point and is a weld; only hinges and ropes have one");
   if (s.point && !s.point->allFinite())
     throw std::invalid_argument(
         "an attachment's point is not finite; it must be a place in the world, in metres");

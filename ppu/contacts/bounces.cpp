@@ -154,7 +154,7 @@ void Bounces::add(const BounceContact& contact) {
 std::optional<double> Bounces::target_of(const BounceContact& contact, const Bounce& bounce, double share,
                                          const BounceSettings& settings, double step) {
   const double along =
-      bounce.normal.dot(bounce.a->velocity_at(bounce.point) - bounce.b->velocity_at(bounce.point));
+      bounce.normal.dot(bounce.a->velocity_at(bounce.point) - bounce.b->velocity_at(bounce.point_b));
   if (contact.is_sharp()) {
     const double least = -(double{contact.gap} + double{contact.room}) / step;
     return along < least ? std::optional(least) : std::nullopt;
@@ -241,13 +241,16 @@ void Bounces::choose(std::span<const ContactBody> bodies, std::span<const Contac
     };
     if (waits(contact.a) || (!with_rigid && waits(contact.b))) continue;
     const double share = double{share_until_touch(contact, step)};
-    const Vector3d end = contact.point.cast<double>();
-    bounce.point = end - (1 - share) * double{step} * bounce.a->velocity_at(end);
+    const double touches_at = double{share_[index_in(changed_, contact.a)]} * double{step};
+    const double left = double{step} - touches_at;
+    const Vector3d end = contact.point.cast<double>() - left * bounce.a->velocity;
+    bounce.point = bounce.point_b = end - left * bounce.a->spin.cross(end - bounce.a->centre);
+    if (with_rigid) bounce.point_b -= touches_at * bounce.b->velocity;
     const auto target = target_of(contact, bounce, share, settings, double{step});
     if (!target) continue;
     bounce.target = *target;
     const double mobility =
-        bounce.a->mobility(bounce.point, bounce.normal) + bounce.b->mobility(bounce.point, bounce.normal);
+        bounce.a->mobility(bounce.point, bounce.normal) + bounce.b->mobility(bounce.point_b, bounce.normal);
     if (!(mobility > 0)) continue;
     bounce.mobility = mobility;
     bounces_.push_back(bounce);
@@ -258,11 +261,11 @@ void Bounces::choose(std::span<const ContactBody> bodies, std::span<const Contac
 void Bounces::iterate() {
   const auto apply = [](const Bounce& bounce, const Vector3d& impulse) {
     bounce.a->push(bounce.point, impulse);
-    bounce.b->push(bounce.point, -impulse);
+    bounce.b->push(bounce.point_b, -impulse);
   };
   for (Bounce& bounce : bounces_) {
     const auto velocity = [&]() -> Vector3d {
-      return bounce.a->velocity_at(bounce.point) - bounce.b->velocity_at(bounce.point);
+      return bounce.a->velocity_at(bounce.point) - bounce.b->velocity_at(bounce.point_b);
     };
     const double wanted = bounce.impulse + (bounce.target - bounce.normal.dot(velocity())) / bounce.mobility;
     const double impulse = std::max(0.0, wanted);
@@ -275,8 +278,8 @@ void Bounces::iterate() {
     Vector3d friction = bounce.friction_impulse;
     if (speed > 0) {
       const Vector3d direction = sliding / speed;
-      friction -= sliding /
-                  (bounce.a->mobility(bounce.point, direction) + bounce.b->mobility(bounce.point, direction));
+      friction -= sliding / (bounce.a->mobility(bounce.point, direction) +
+                             bounce.b->mobility(bounce.point_b, direction));
     }
     const double most = double{contacts_[bounce.contact].friction} * impulse;
     const double length = friction.norm();

@@ -76,7 +76,7 @@ class Bounces {
   void for_each_impulse_on_rigid(const Work& work) const {
     for (const Bounce& bounce : bounces_)
       if (contacts_[bounce.contact].b == BounceContact::kNobody)
-        work(contacts_[bounce.contact].rigid, Eigen::Vector3f(bounce.point.cast<float>()),
+        work(contacts_[bounce.contact].rigid, Eigen::Vector3f(bounce.point_b.cast<float>()),
              Eigen::Vector3f((-bounce.impulse * bounce.normal - bounce.friction_impulse).cast<float>()));
   }
 
@@ -116,7 +116,11 @@ class Bounces {
   struct Bounce {
     std::uint32_t contact = 0;
     Whole *a = nullptr, *b = nullptr;
-    Eigen::Vector3d point{0, 0, 0}, normal{0, 1, 0};
+    Eigen::Vector3d point{0, 0, 0};  ///< world, when a touches
+    Eigen::Vector3d point_b{
+        0, 0,
+        0};  ///< likewise; of a rigid b, which changes its velocity at once, as it is at the substep's beginning
+    Eigen::Vector3d normal{0, 1, 0};
     double target = 0, mobility = 1, impulse = 0;
     Eigen::Vector3d friction_impulse{0, 0, 0};
   };

@@ -18,14 +18,14 @@ float mobility(const SoftContact& contact, const ContactSides& sides, const Vect
   const float own =
       contact.a.mobility(contact.on_held ? sides.a->inverse_masses_if_held : sides.a->inverse_masses);
   if (sides.b != nullptr) return own + contact.b.mobility(sides.b->inverse_masses);
-  return own + sides.rigids[contact.rigid].mobility(contact.point, direction);
+  return own + sides.rigids[contact.rigid].mobility(contact.acts_at, direction);
 }
 
 Vector3f relative_velocity(const SoftContact& contact, const ContactSides& sides) {
   const Vector3f a =
       contact.on_held ? sides.a->velocity_if_held(contact.a) : contact.a.of(sides.a->velocities);
   if (sides.b != nullptr) return a - contact.b.of(sides.b->velocities);
-  return a - sides.rigids[contact.rigid].velocity_at(contact.point);
+  return a - sides.rigids[contact.rigid].velocity_at(contact.acts_at);
 }
 
 void apply(const SoftContact& contact, const ContactSides& sides, const Vector3f& impulse) {
@@ -37,7 +37,7 @@ void apply(const SoftContact& contact, const ContactSides& sides, const Vector3f
   ContactRigid& rigid = sides.rigids[contact.rigid];
   if (rigid.inverse_mass == 0) return;
   const ContactRigid::Change change =
-      rigid.change_by(impulse, Vector3f(contact.point - rigid.centre).cross(impulse));
+      rigid.change_by(impulse, Vector3f(contact.acts_at - rigid.centre).cross(impulse));
   rigid.velocity -= change.velocity;
   rigid.spin -= change.spin;
 }
@@ -130,7 +130,7 @@ spu::SolveContact as_kernels_solve_it(const SoftContact& contact, const ContactS
     carried += contact.b.of(sides.b->velocities);
     result.cell_b = cell_of(contact.b);
   } else {
-    carried += rigids[contact.rigid].velocity_at(contact.point);
+    carried += rigids[contact.rigid].velocity_at(contact.acts_at);
   }
   result.cell_a = cell_of(contact.a);
   for (int d = 0; d < 3; ++d) {
@@ -152,7 +152,7 @@ void meet_rigid(spu::SolveContact& solved, const SoftContact& contact, const Con
                 std::uint16_t number) {
   const ContactRigid& rigid = sides.rigids[contact.rigid];
   const float own = contact.a.mobility(sides.a->inverse_masses);
-  const Vector3f arm = contact.point - rigid.centre, &normal = contact.normal;
+  const Vector3f arm = contact.acts_at - rigid.centre, &normal = contact.normal;
   const auto moved_by = [&](const Vector3f& impulse) -> Vector3f {
     const ContactRigid::Change change = rigid.change_by(impulse, arm.cross(impulse));
     return change.velocity + change.spin.cross(arm);

@@ -17,15 +17,19 @@ struct SoftContact {
   static constexpr float kNoLimit = std::numeric_limits<float>::infinity();
 
   Anchor a;
-  Anchor b;                         ///< if b is a soft body
-  std::uint32_t rigid = 0;          ///< index of b if it is rigid
-  Eigen::Vector3f point{0, 0, 0};   ///< metres, world
+  Anchor b;                        ///< if b is a soft body
+  std::uint32_t rigid = 0;         ///< index of b if it is rigid
+  Eigen::Vector3f point{0, 0, 0};  ///< metres, world, at the substep's end
+  /// Metres, world: where impulses act on b if it is rigid. This is the point's place at the substep's beginning, as particles and rigid
+  /// bodies are where they are then: so both get the same moment, and nothing depends on how fast both move together.
+  Eigen::Vector3f acts_at{0, 0, 0};
   Eigen::Vector3f normal{0, 1, 0};  ///< from b to a
   float least_velocity = 0;         ///< m/s along the normal, of a against b
   float depth = 0;                  ///< metres of penetration, negative if they are apart
   /// Metres along the normal, above the surface of a rigid b: where `point` would be at the substep's end without contacts.
   float above = 0;
   float friction = 0;
+  float restitution = 0;  ///< of b if it is rigid
   /// Metres that body a may move on as a whole before something sharp crushes its cells (sharp_contacts.h); kNoLimit: nothing sharp.
   float room = kNoLimit;
   bool on_held = false;       ///< with a moving rigid body, at held particles of body a

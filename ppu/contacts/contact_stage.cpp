@@ -78,10 +78,19 @@ Bounds<3> box_of_step(std::span<const Vector3f> positions, std::span<const Vecto
   return box;
 }
 
+void ContactStage::remember_crushed(std::uint32_t body) {
+  if (crushed_count_ == crushed_.size()) crushed_.emplace_back();
+  Crushed& crushed = crushed_[crushed_count_++];
+  crushed.body = body;
+  crushed.moment = crushed_cells_.moment();
+  crushed.pushes.assign(bodies_[body].pushes.begin(), bodies_[body].pushes.end());
+}
+
 void ContactStage::take_over(std::span<const BodyInStage> bodies, float step) {
   bodies_.resize(bodies.size());
   cells_.resize(bodies.size());
   is_crushed_.resize(bodies.size());
+  crushed_count_ = 0;
   // Resizes it now, before bodies refer to it.
   for (const BodyInStage& body : bodies)
     nothing_moves_.resize(std::max(nothing_moves_.size(), body.positions.size()));
@@ -107,6 +116,7 @@ void ContactStage::take_over(std::span<const BodyInStage> bodies, float step) {
     if (!body.asleep) {
       velocities_changed = crushed_cells_.hold(body, step);
       is_crushed_[i] = crushed_cells_.count() > 0;
+      if (velocities_changed || is_crushed_[i]) remember_crushed(static_cast<std::uint32_t>(i));
     }
     body.travel.setZero();
     for (std::size_t p = 0; p < body.ends.size(); ++p) {
@@ -293,7 +303,7 @@ void ContactStage::find_presses(const Group& group, std::span<const ContactRigid
     float mobility = 0;
     for (std::size_t k = 0; k < 8; ++k) mobility += contact.a.share[k] * moved_by_all_[contact.a.particle[k]];
     mobility = std::max(mobility, contact.a.mobility(body.inverse_masses));
-    presses_.push_back({contact.rigid, contact.point, contact.normal, 1 / mobility,
+    presses_.push_back({contact.rigid, contact.acts_at, contact.normal, 1 / mobility,
                         contact.a.of(body.velocities), contact.friction, body.spacing()});
   });
 }
@@ -310,7 +320,7 @@ void ContactStage::release_supports() {
   for (std::size_t i = pair_groups_; i < group_count_; ++i) {
     const Group& group = groups_[i];
     for (std::size_t c = 0; c < group.contacts.size(); ++c)
-      supports_.add_impulse(group.contacts[c].rigid, group.contacts[c].point, -group.whole_impulse(c));
+      supports_.add_impulse(group.contacts[c].rigid, group.contacts[c].acts_at, -group.whole_impulse(c));
   }
   bounces_.for_each_impulse_on_rigid(
       [&](std::uint32_t rigid, const Vector3f& point, const Vector3f& impulse) {
@@ -359,11 +369,11 @@ void ContactStage::bounce(std::span<ContactRigid> rigids, float step) {
       Vector3f v = contact.a.of(a.velocities);
       if (group.with_rigid) {
         const ContactRigid& rigid = rigids[contact.rigid];
-        v -= rigid.velocity_at(contact.point);
+        v -= rigid.velocity_at(contact.acts_at);
         bounce.rigid = contact.rigid;
         bounce.cell = contact.a.cell;
         add(rigid.number, contact.point, contact.normal, contact.least_velocity, contact.normal.dot(v),
-            contact.friction, restitution_with(rigid.restitution), contact.room);
+            contact.friction, restitution_with(contact.restitution), contact.room);
       } else {
         v -= contact.b.of(b.velocities);
         add(group.b, contact.point, contact.normal, contact.least_velocity, contact.normal.dot(v),
@@ -455,10 +465,10 @@ void ContactStage::step(std::span<const BodyInStage> bodies, std::span<const Obs
       solve_with_worker(rigids, step);
     else
       solve_here(rigids, step);
-    take_back_lost_spin(step);
     for (std::size_t i = pair_groups_; i < group_count_; ++i)
       if (is_crushed_[groups_[i].a]) hold_pushes_by_friction(groups_[i], rigids);
   }
+  take_back_lost_spin(step);
   release_supports();
   remember_who_presses(rigids);
 }
@@ -551,7 +561,18 @@ void ContactStage::prepare_here(std::span<ContactRigid> rigids) {
     prepare(group->contacts, {&bodies_[group->a], group->with_rigid ? nullptr : &bodies_[group->b], rigids});
 }
 
-/// Sums up pairs of soft bodies. Rigid and sleeping bodies are not counted here. A push moves particles together with their momenta.
+/// Finds out which bodies touch nothing rigid, nor any that does: together these keep their angular momentum.
+void ContactStage::find_free_bodies() {
+  find_islands(islands_);
+  is_free_.assign(bodies_.size(), true);
+  for (std::size_t g = pair_groups_; g < group_count_; ++g) is_free_[islands_.find(groups_[g].a)] = false;
+  for (std::uint32_t i = 0; i < bodies_.size(); ++i)  // attachments hold some
+    if (!bodies_[i].inverse_masses_if_held.empty()) is_free_[islands_.find(i)] = false;
+  for (std::uint32_t i = 0; i < bodies_.size(); ++i) is_free_[i] = is_free_[islands_.find(i)];
+}
+
+/// Sums up pairs of soft bodies, and crushed ones that are free. Rigid and sleeping bodies are not counted here. A push moves particles together with their
+/// momenta.
 void ContactStage::take_back_lost_spin(float step) {
   using Eigen::Vector3d;
   lost_spin_.begin(bodies_.size());
@@ -581,6 +602,18 @@ void ContactStage::take_back_lost_spin(float step) {
     }
     if (!given.allFinite()) refuse_to_be_infinite();  // velocities overflowed in this step
     lost_spin_.add(bodies_, group.a, group.b, given);
+  }
+  if (crushed_count_ > 0) find_free_bodies();
+  for (const Crushed& crushed : std::span(crushed_).first(crushed_count_)) {
+    if (!is_free_[crushed.body]) continue;
+    const ContactBody& body = bodies_[crushed.body];
+    Vector3d given = crushed.moment;
+    for (std::size_t p = 0; p < crushed.pushes.size(); ++p) {
+      const Vector3d moved = double{step} * crushed.pushes[p].cast<double>();
+      given += double{body.model->masses()[p]} * moved.cross(body.velocities[p].cast<double>());
+    }
+    if (!given.allFinite()) refuse_to_be_infinite();
+    lost_spin_.add(bodies_, crushed.body, crushed.body, given);
   }
   lost_spin_.take_back(bodies_);
 }

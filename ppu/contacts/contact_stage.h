@@ -102,6 +102,12 @@ class ContactStage {
   AttachmentSolver<3>* attachments = nullptr;
 
  private:
+  /// What crushed cells have done to a body, apart from contacts.
+  struct Crushed {
+    std::uint32_t body = 0;
+    Eigen::Vector3d moment{0, 0, 0};      ///< CrushedCells::moment()
+    std::vector<Eigen::Vector3f> pushes;  ///< m/s
+  };
   /// The contacts of a pair of bodies, as seen from a, or of one body with rigid ones.
   struct Group {
     std::uint32_t a = 0, b = 0;
@@ -132,6 +138,7 @@ class ContactStage {
   using Pair = ContactOrder::Pair;
   static constexpr std::size_t kManyAttachments = 16;
 
+  void remember_crushed(std::uint32_t body);
   void take_over(std::span<const BodyInStage> bodies, float step);
   void find_held(std::span<const ContactRigid> rigids, float step);
   void find_pairs(std::span<const BodyInStage> bodies);
@@ -180,6 +187,7 @@ class ContactStage {
         if (group->alternates && i < iterations_of(*group)) work(*group, 1);
   }
   void iterate_here(std::span<Group* const> groups, std::span<ContactRigid> rigids, float step);
+  void find_free_bodies();
   void take_back_lost_spin(float step);
 
   // In contact_stage_worker.cpp:
@@ -216,7 +224,11 @@ class ContactStage {
   std::vector<std::vector<std::uint32_t>> touched_;  // of each body: cells, ascending
   CrushedCells crushed_cells_;
   SharpContacts sharp_contacts_;
-  std::vector<bool> is_crushed_;     // of each body: it has crushed cells
+  std::vector<bool> is_crushed_;  // of each body: it has crushed cells
+  std::vector<Crushed> crushed_;  // the first crushed_count_ are used
+  std::size_t crushed_count_ = 0;
+  DisjointSets islands_;       // for find_free_bodies()
+  std::vector<bool> is_free_;  // likewise, of each body
   std::vector<float> moved_by_all_;  // of each pressing particle, by an impulse of 1 at each point
   std::vector<Press> presses_;
   Supports supports_;

@@ -11,6 +11,7 @@
 namespace softcell::ppu {
 namespace {
 
+using Eigen::Vector3d;
 using Eigen::Vector3f;
 
 constexpr int kIterations = 3;
@@ -61,8 +62,9 @@ std::array<Vector3f, 8> gradient(const Edges& edges) {
 }
 
 /// Changes motions, in cells a substep, so that the volume grows by `wanted`.
-void grow(std::vector<Vector3f>& values, float per_value, const std::array<std::uint32_t, 8>& corners,
-          const Edges& edges, float wanted, const ContactBody& body) {
+/// @return  the moment of the impulses about any place, as they act where particles are at the substep's beginning; 0 if the edges are, too
+Vector3d grow(std::vector<Vector3f>& values, float per_value, const std::array<std::uint32_t, 8>& corners,
+              const Edges& edges, float wanted, const ContactBody& body) {
   auto by_corner = gradient(edges);
   if (body.model->is_flat())  // keeps it a layer
     for (Vector3f& by : by_corner) by.z() = 0;
@@ -73,8 +75,13 @@ void grow(std::vector<Vector3f>& values, float per_value, const std::array<std::
     mobility += by_corner[k].squaredNorm() / masses[corners[k]];
   }
   const float impulse = wanted / std::max(mobility, kLeastMobility * 8 / mass);
-  for (unsigned k = 0; k < 8; ++k)
+  Vector3d moment = Vector3d::Zero();
+  for (unsigned k = 0; k < 8; ++k) {
     values[corners[k]] += per_value * impulse / masses[corners[k]] * by_corner[k];
+    const Vector3f arm = body.positions[corners[k]] - body.positions[corners[0]];
+    moment += arm.cast<double>().cross((per_value * impulse * by_corner[k]).cast<double>());
+  }
+  return moment;
 }
 
 }  // namespace
@@ -121,6 +128,7 @@ bool CrushedCells::hold(ContactBody& body, float step) {
   cells_.clear();
   least_.clear();
   count_ = 0;
+  moment_.setZero();
   const Lattice<3>& lattice = body.lattice();
   const float per_spacing = 1 / body.spacing();
   const auto edges_at_end = [&](const std::array<std::uint32_t, 8>& corners) {
@@ -151,10 +159,11 @@ bool CrushedCells::hold(ContactBody& body, float step) {
       const Edges edges = edges_at_end(corners);
       const float missing = least_[c] - edges.volume();
       if (missing <= 0) continue;
-      grow(body.velocities, body.spacing() / step, corners, edges, missing, body);
+      moment_ += grow(body.velocities, body.spacing() / step, corners, edges, missing, body);
       changed = true;
     }
   }
+  if (body.model->is_flat()) moment_.head<2>().setZero();
   return changed;
 }
 

@@ -29,13 +29,16 @@ CrushedCellCount count_crushed_cells(const Lattice<3>& lattice, std::span<const 
 class CrushedCells {
  public:
   /// Finds cells that would be crushed at the substep's end. It removes velocities that crush them further, and adds pushes that give them
-  /// back a share of their volume. Momentum and angular momentum are kept.
+  /// back a share of their volume. Momentum is kept. Of angular momentum moment() is gained, and what
+  /// pushes make of it, which depends on the velocities at the end (ContactStage::take_back_lost_spin()).
   /// @param body  its velocities and pushes change; its ends are not updated
   /// @return      whether velocities have changed
   bool hold(ContactBody& body, float step);
 
   /// The number of cells that were crushed at the beginning of the substep of the last hold(), and would have been at its end.
   std::uint32_t count() const { return count_; }
+  /// kg m^2/s: the angular momentum that the last hold() has given its body. Its impulses act where particles would be at the end.
+  const Eigen::Vector3d& moment() const { return moment_; }
 
  private:
   void place_ends(const ContactBody& body, float step);
@@ -45,6 +48,7 @@ class CrushedCells {
   std::vector<std::uint32_t> cells_;  // cells that would be crushed at the end
   std::vector<float> least_;          // for each of them: the volume that it shall have then
   std::uint32_t count_ = 0;
+  Eigen::Vector3d moment_{0, 0, 0};
 };
 
 }  // namespace softcell::ppu

@@ -15,9 +15,13 @@ void KnownSides::begin_substep() {
   is_new_ = false;
 }
 
-float KnownSides::last_side_of(std::uint32_t rigid, std::uint32_t part) const {
+int KnownSides::known_side_of(std::uint32_t rigid, std::uint32_t part) const {
   const auto known = std::ranges::find_if(sides_, of_whole(rigid, part));
-  return known != sides_.end() && known->side < 0 ? -1.0f : 1.0f;
+  return known == sides_.end() ? 0 : known->side;
+}
+
+float KnownSides::last_side_of(std::uint32_t rigid, std::uint32_t part) const {
+  return known_side_of(rigid, part) < 0 ? -1.0f : 1.0f;
 }
 
 void KnownSides::Side::look(int seen) {

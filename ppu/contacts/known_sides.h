@@ -25,6 +25,8 @@ class KnownSides {
   float side_of(std::uint32_t rigid, std::uint32_t part, int seen);
   /// The last answer of side_of(), or 1.
   float last_side_of(std::uint32_t rigid, std::uint32_t part) const;
+  /// As last_side_of(), but 0 if it has been unclear from the beginning.
+  int known_side_of(std::uint32_t rigid, std::uint32_t part) const;
 
   using Triangle = std::array<Eigen::Vector3f, 3>;
   /// One sheet of a part's triangles near the body.

@@ -19,6 +19,8 @@ using Eigen::Vector3f;
 constexpr float kLeastStep = 0.02f;
 constexpr float kMostSteps = 256;    // for one motion: a faster point takes longer steps
 constexpr float kClearSide = 0.05f;  // cells: a point nearer to a triangle may be on either side
+constexpr float kDoubtfulSide =
+    0.15f;  // likewise, if it is known to have been on the other side: its body may be pressed flat
 // Cosines between normals: of the two sides of a thin plate, and of faces that count as one. If all triangles are like one of them, no two
 // are opposite.
 constexpr float kOpposite = -0.5f, kAlike = 0.5f;
@@ -38,6 +40,22 @@ struct Arrival {
   }
 };
 
+/// Looks for what a step of a motion has jumped over or, if it ends in a thin shape, for the side from which it has come.
+/// @param before, after  shares of the way; the motion comes nearer to the obstacle at the first and leaves it at the second
+/// @return  a place near the obstacle, on the side from which the motion comes; none: it has only passed by
+std::optional<Arrival> jumped_over(const Obstacle& obstacle, const Vector3f& from, const Vector3f& along,
+                                   float near, float before, float after) {
+  constexpr int kHalvings = 20;
+  for (int i = 0; i < kHalvings; ++i) {
+    const float middle = 0.5f * (before + after);
+    const Separation there = separation(obstacle, from + middle * along);
+    const bool comes = there.normal.dot(along) < 0;
+    if (comes && there.distance <= near) return Arrival{middle, there};
+    (comes ? before : after) = middle;
+  }
+  return {};
+}
+
 /// @param near  metres from the obstacle  @return  the first such place of the motion; none: it does not come near
 std::optional<Arrival> arrive(const Obstacle& obstacle, const Vector3f& from, const Vector3f& along,
                               float near, float spacing) {
@@ -47,18 +65,22 @@ std::optional<Arrival> arrive(const Obstacle& obstacle, const Vector3f& from, co
   float done = 0;
   const float least_step = std::max(kLeastStep * spacing, length / kMostSteps);
   while (here.distance > near && done < length) {
+    const float before = done;
+    const bool may_jump = least_step > here.distance, came = here.normal.dot(along) < 0;
     done = std::min(length, done + std::max(here.distance - near, least_step));
     here = separation(obstacle, from + done / length * along);
+    if (may_jump && came && here.normal.dot(along) > 0)
+      if (const auto arrival = jumped_over(obstacle, from, along, near, before / length, done / length))
+        return arrival;
   }
   if (here.distance > near) return {};
   return Arrival{length > 0 ? done / length : 1, here};
 }
 
 /// For a point from outside the first place inside counts: at the end it may be nearer to the other side.
-ObstacleHit hit_at(const Arrival& arrival, const PointWay& way, float allowance) {
+ObstacleHit hit_at(const Arrival& arrival, const PointWay& way) {
   const auto& [share, there] = arrival;
-  return ObstacleHit{there.normal,
-                     there.distance + allowance + (1 - share) * there.normal.dot(way.to - way.from)};
+  return ObstacleHit{there.normal, there.distance + (1 - share) * there.normal.dot(way.to - way.from)};
 }
 
 /// Corrects the contact of a point that arrives at a face a little way from its edge, while its body's surface slides past the edge. Where
@@ -67,7 +89,7 @@ ObstacleHit hit_at(const Arrival& arrival, const PointWay& way, float allowance)
 /// @return  the contact with the face beyond the edge; none: there is no edge near, or the body runs into the face
 std::optional<ObstacleHit> hit_of_face_beside(const Obstacle& obstacle, const PointWay& way,
                                               const Arrival& arrival, const Vector3f& inwards,
-                                              float allowance, float spacing) {
+                                              float spacing) {
   const Separation& there = arrival.there;
   const float cosine = inwards.dot(there.normal);
   const Vector3f aside = inwards - cosine * there.normal;
@@ -77,8 +99,14 @@ std::optional<ObstacleHit> hit_of_face_beside(const Obstacle& obstacle, const Po
   const Vector3f beyond = behind + kBeside * spacing / sine * aside;
   const Separation face = separation(obstacle, beyond);
   if (face.distance < 0 || face.normal.dot(inwards) < 0.5f * (cosine + 1)) return {};
-  return ObstacleHit{face.normal, face.distance + face.normal.dot(way.to - beyond) + allowance};
+  return ObstacleHit{face.normal, face.distance + face.normal.dot(way.to - beyond)};
 }
+
+/// A contact with the face through which a line from the inside of a body enters an obstacle.
+struct EnteredFace {
+  ObstacleHit hit;
+  Vector3f place;  ///< on the face, in the obstacle's frame
+};
 
 /// Corrects the contact of a point that has been pressed in so deep that it is nearer to another face than to the one through which it
 /// entered: to the far side of a thin shape, or to a side near an edge. It would leave through that face, and its body would get stuck
@@ -86,16 +114,14 @@ std::optional<ObstacleHit> hit_of_face_beside(const Obstacle& obstacle, const Po
 /// @param inside  a place of the point's body, before the substep, in the obstacle's frame
 /// @param hit     of the point, as hit_at() finds it
 /// @return  the contact with the face that the line from inside of the body meets; none: it is the same face, or `inside` does not tell
-std::optional<ObstacleHit> hit_of_entered_face(const Obstacle& obstacle, const PointWay& way,
-                                               const Vector3f& inside, const ObstacleHit& hit,
-                                               float allowance, float spacing) {
-  const Vector3f along = way.from - inside;
-  if (hit.normal.dot(along) <= 0) return {};  // the body is in front of it
-  const auto arrival = arrive(obstacle, inside, along, 0, spacing);
+std::optional<EnteredFace> entered_face(const Obstacle& obstacle, const PointWay& way, const Vector3f& inside,
+                                        const ObstacleHit& hit, float spacing) {
+  const PointWay line{inside, way.from};
+  if (hit.normal.dot(line.to - line.from) <= 0) return {};  // the body is in front of it
+  const auto arrival = arrive(obstacle, line.from, line.to - line.from, 0, spacing);
   if (!arrival || arrival->share == 0 || arrival->there.normal.dot(hit.normal) > kAlike) return {};
-  const auto& [share, there] = *arrival;
-  const Vector3f entry = inside + share * along - there.distance * there.normal;
-  return ObstacleHit{there.normal, there.normal.dot(way.to - entry) + allowance};
+  const Vector3f place = arrival->place_on(line), &normal = arrival->there.normal;
+  return EnteredFace{{normal, normal.dot(way.to - place)}, place};
 }
 
 class ObstacleContacts {
@@ -119,13 +145,20 @@ class ObstacleContacts {
       cells_.beside.begin(obstacles_, near_obstacles_, obstacle_, body_.spacing());
     const Passage near = passage(near_);
     cells_.boxes().for_each_meeting(near_, [&](std::uint32_t cell) {
-      for_each_point_in(near, cell, [&](const TouchPoint& point, const Vector3f& from, const Vector3f& to) {
+      for_each_outer_point(cell, [&](const TouchPoint& point, const Vector3f& from, const Vector3f& to) {
         const PointWay way = way_of(from, to);
-        const float spacing = body_.spacing(), reach_of_point = kNear * spacing - point.allowance;
-        const auto arrival = arrive(obstacle_, way.from, way.to - way.from, reach_of_point, spacing);
+        const float spacing = body_.spacing();
+        const Vector3f inside = obstacle_.to_own(inner_place(*body_.model, cell, body_.positions));
+        const auto face = face_before_outer_point(way, inside, point.allowance);
+        if (face && face->end <= kNear * spacing) add(point.anchor, to, *face, face->end - point.allowance);
+      });
+      for_each_point_in(near, cell, [&](const TouchPoint& point, const Vector3f& from, const Vector3f& to) {
+        if (point.allowance > 0) return;
+        const PointWay way = way_of(from, to);
+        const float spacing = body_.spacing();
+        const auto arrival = arrive(obstacle_, way.from, way.to - way.from, kNear * spacing, spacing);
         if (!arrival) return;
-        const ObstacleHit hit = hit_of(point, way, *arrival, cell);
-        add(point.anchor, to, hit, hit.end - point.allowance);
+        if (const auto hit = hit_of(point, way, *arrival, cell)) add(point.anchor, to, *hit, hit->end);
       });
     });
     for (const ObstacleEdge& edge : obstacle_.edges) try_edge(edge, reach);
@@ -179,6 +212,16 @@ class ObstacleContacts {
     }
   }
 
+  /// Calls work(point, from, to) for those of a cell's points that are outside of the drawn surface.
+  template <typename Work>
+  void for_each_outer_point(std::uint32_t cell, const Work& work) const {
+    const ContactModel& model = *body_.model;
+    for (std::uint32_t i = model.first_of_cell[cell]; i < model.first_of_cell[cell + 1]; ++i) {
+      const TouchPoint& point = model.touch_points[i];
+      if (point.allowance > 0) work(point, point.anchor.of(body_.positions), point.anchor.of(body_.ends));
+    }
+  }
+
   PointWay way_of(const Vector3f& from, const Vector3f& to) const {
     const Vector3f carried = step_ * rigid_.velocity_at(to);
     return {obstacle_.to_own(from), obstacle_.to_own(to - carried)};
@@ -188,7 +231,8 @@ class ObstacleContacts {
   /// from the triangle before and after the substep, or passes beside it.
   float side_of(const KnownTriangles& triangles, const EndCells::PointAtTriangle& near) const {
     const ObstacleTriangle triangle(obstacle_, triangles, near.triangle);
-    if (!triangle.has_area()) return 0;
+    if (!triangle.has_area() || near.point->allowance > 0)
+      return 0;  // a point outside of what is drawn may be on either side
     const float thick = kPressedThrough * body_.spacing() + obstacle_.rounding;
     const float from = triangle.height(near.from), to = triangle.height(near.to);
     if (std::min(from, to) > thick || std::max(from, to) < -thick) return 0;
@@ -201,7 +245,9 @@ class ObstacleContacts {
 
   /// 1: a point that may have been pressed through shows that the body is in front of a triangle; -1: behind it; 0: neither is clear.
   int vote_of(const KnownTriangles& triangles, const EndCells::PointAtTriangle& near) const {
-    const float side = side_of(triangles, near), clear = kClearSide * body_.spacing();
+    const float side = side_of(triangles, near);
+    const int known = body_.sides->known_side_of(rigid_.number, obstacle_.part);
+    const float clear = (static_cast<float>(known) * side < 0 ? kDoubtfulSide : kClearSide) * body_.spacing();
     return side > clear ? 1 : side < -clear ? -1 : 0;
   }
 
@@ -251,9 +297,10 @@ class ObstacleContacts {
     find_near_triangles(triangles);
     find_fronts(triangles);
     for (const EndCells::PointAtTriangle& at : cells_.near_triangles)
-      if (const auto hit = ObstacleTriangle(obstacle_, triangles, at.triangle)
-                               .meet({at.from, at.to}, at.inside, body_.spacing(), at.front))
-        add(at.point->anchor, at.point->anchor.of(body_.ends), *hit, hit->end);
+      if (const auto hit =
+              ObstacleTriangle(obstacle_, triangles, at.triangle)
+                  .meet({at.from, at.to}, at.inside, body_.spacing(), at.front, at.point->allowance))
+        add(at.point->anchor, at.point->anchor.of(body_.ends), *hit, hit->end - at.point->allowance);
     try_edges_of_triangles(triangles, reach);
   }
 
@@ -370,8 +417,12 @@ class ObstacleContacts {
       const Bounds<3> around = cells_.boxes().at(cell);
       if (!overlap(near_, Bounds<3>{around.low.cwiseMin(inner), around.high.cwiseMax(inner)})) return;
       const Vector3f inside = origin_ ? *origin_ : obstacle_.to_own(inner);
+      for_each_outer_point(cell, [&](const TouchPoint& point, const Vector3f& from, const Vector3f& to) {
+        const PointWay way = way_of(from, to);
+        add_between(triangles, {&point, 0, way.from, way.to, inside});
+      });
       for_each_point_in(deep, cell, [&](const TouchPoint& point, const Vector3f& from, const Vector3f& to) {
-        if (point.allowance > 0) return;  // it may be on either side
+        if (point.allowance > 0) return;
         const PointWay way = way_of(from, to);
         EndCells::PointAtTriangle at{&point, 0, way.from, way.to, inside};
         const std::size_t first = cells_.near_triangles.size();
@@ -392,6 +443,22 @@ class ObstacleContacts {
   template <typename Work>
   static void for_each_triangle(const KnownTriangles& triangles, const Bounds<3>& box, const Work& work) {
     if (overlap(box, triangles.boxes().bounds())) triangles.boxes().for_each_meeting(box, work);
+  }
+
+  /// Adds triangles that separate a point outside of the drawn surface, however far, from the inside of its body.
+  void add_between(const KnownTriangles& triangles, EndCells::PointAtTriangle at) {
+    const Vector3f low = at.inside.cwiseMin(at.from).cwiseMin(at.to),
+                   high = at.inside.cwiseMax(at.from).cwiseMax(at.to);
+    const float squashed = kPressedThrough * body_.spacing();
+    const Vector3f margin = Vector3f::Constant(squashed);
+    for_each_triangle(triangles, {low - margin, high + margin}, [&](std::uint32_t triangle) {
+      const ObstacleTriangle one(obstacle_, triangles, triangle);
+      if (std::abs(one.height(at.inside)) > squashed && !one.parts(at.from, at.inside) &&
+          !one.parts(at.to, at.inside))
+        return;
+      at.triangle = triangle;
+      cells_.near_triangles.push_back(at);
+    });
   }
 
   /// Adds triangles that separate a point from the inside of its body, up to kPressedDeepest from the point.
@@ -451,9 +518,11 @@ class ObstacleContacts {
     SoftContact& contact = contacts_.emplace_back();
     contact.a = body_.model->held(anchor);
     contact.rigid = obstacle_.rigid;
+    contact.restitution = obstacle_.restitution;
     contact.point = point;
+    contact.acts_at = contact.a.of(body_.positions);
     contact.normal = obstacle_.rotation * hit.normal;
-    const Vector3f v = contact.a.of(body_.velocities) - rigid_.velocity_at(point);
+    const Vector3f v = contact.a.of(body_.velocities) - rigid_.velocity_at(contact.acts_at);
     contact.above = above;
     complete(contact, hit.end, contact.normal.dot(v), friction_, step_);
   }
@@ -485,20 +554,27 @@ class ObstacleContacts {
            near_obstacles_.size() > 1;
   }
 
+  /// Whether another shape lies behind a face. @param place  on the face, in the obstacle's frame
+  bool is_covered(const Vector3f& place, const Vector3f& normal) {
+    return may_have_others_beside() && cells_.beside.is_covered(place, normal);
+  }
+
   bool is_within_a_floor(const Vector3f& corner, const Vector3f& along) {
     if (!may_have_others_beside()) return false;
     if (!along.isZero(0)) return cells_.beside.face_goes_on(corner, along);
     return body_.model->is_flat() && cells_.beside.face_goes_on(corner, Vector3f::UnitZ());
   }
 
-  ObstacleHit hit_of(const TouchPoint& point, const PointWay& way, const Arrival& arrival,
-                     std::uint32_t cell) {
+  /// @return  none: another shape has the contact
+  std::optional<ObstacleHit> hit_of(const TouchPoint& point, const PointWay& way, const Arrival& arrival,
+                                    std::uint32_t cell) {
     const float spacing = body_.spacing();
-    if (may_turn_near(obstacle_, arrival.place_on(way), kBeside * spacing))
-      if (const auto beside =
-              hit_of_face_beside(obstacle_, way, arrival, inwards_of(point), point.allowance, spacing))
-        return *beside;
-    return turned_outwards(hit_at(arrival, way, point.allowance), way, cell, point.allowance);
+    const Vector3f arrives_at = arrival.place_on(way);
+    if (may_turn_near(obstacle_, arrives_at, kBeside * spacing)) {
+      const auto beside = hit_of_face_beside(obstacle_, way, arrival, inwards_of(point), spacing);
+      if (beside && !is_covered(arrives_at, beside->normal)) return beside;
+    }
+    return turned_outwards(hit_at(arrival, way), way, cell);
   }
 
   /// From a point across the surface into its body: of unit length, in the obstacle's frame. 0: the surface is not flat there.
@@ -519,15 +595,45 @@ class ObstacleContacts {
     return obstacle_.rotation.transpose() * way.stableNormalized();
   }
 
+  /// The contact of a point outside of the drawn surface, which may be deep in the obstacle or on its other side: the line to it from the
+  /// inside of its body tells the face.
+  /// @param inside  a place of the point's body, before the substep, in the obstacle's frame
+  /// @return  none: the line does not enter, `inside` does not tell, or another shape has the contact
+  std::optional<ObstacleHit> face_before_outer_point(const PointWay& way, const Vector3f& inside,
+                                                     float allowance) {
+    const float spacing = body_.spacing();
+    const PointWay line{inside, way.from};
+    const auto arrival = arrive(obstacle_, line.from, line.to - line.from, 0, spacing);
+    // Where a body is pressed flat, its inside may be a little in the obstacle, too.
+    if (!arrival || arrival->there.distance < -kPressedThrough * spacing) return {};
+    Separation face = arrival->there;
+    Vector3f at = line.from + arrival->share * (line.to - line.from);
+    if (arrival->share == 0) {  // of a thin shape, the nearest face may be the far one
+      const Vector3f within = at - 2 * kPressedThrough * spacing * face.normal;
+      if (separation(obstacle_, within).distance > 0) return {};
+    }
+    if (is_covered(arrival->place_on(line), face.normal)) {
+      if (arrival->share > 0) at = way.from;
+      const auto other =
+          cells_.beside.way_out(at, {face.normal.dot(at - arrival->place_on(line)), face.normal}, at, inside);
+      if (!other) return {};
+      face = *other;
+    }
+    return ObstacleHit{face.normal, face.distance + face.normal.dot(way.to - at) + allowance};
+  }
+
   /// Changes a contact that leads to the far side of a thin shape, or through a face with another shape behind it.
-  ObstacleHit turned_outwards(const ObstacleHit& hit, const PointWay& way, std::uint32_t cell,
-                              float allowance) {
+  /// @return  none: the point is in the other shape, which has the contact
+  std::optional<ObstacleHit> turned_outwards(const ObstacleHit& hit, const PointWay& way,
+                                             std::uint32_t cell) {
     const Vector3f inside = obstacle_.to_own(inner_place(*body_.model, cell, body_.positions));
-    if (const auto near = hit_of_entered_face(obstacle_, way, inside, hit, allowance, body_.spacing()))
-      return *near;
+    const auto entered = entered_face(obstacle_, way, inside, hit, body_.spacing());
+    if (entered && !is_covered(entered->place, entered->hit.normal)) return entered->hit;
     if (!may_have_others_beside()) return hit;
-    const auto other = cells_.beside.way_out(way.to, {hit.end - allowance, hit.normal}, way.from);
-    return other ? ObstacleHit{other->normal, other->distance + allowance} : hit;
+    if (const auto other = cells_.beside.way_out(way.to, {hit.end, hit.normal}, way.from, inside))
+      return ObstacleHit{other->normal, other->distance};
+    if (hit.end > 0 && is_covered(way.to - hit.end * hit.normal, hit.normal)) return {};
+    return hit;
   }
 
   /// @param along   the edge of the corner; 0: a tip, in two dimensions a corner
@@ -546,10 +652,12 @@ class ObstacleContacts {
     SoftContact& contact = contacts_.emplace_back();
     contact.a = body_.model->held(anchor_in_cell(body_.lattice(), place->cell, place->xi));
     contact.rigid = obstacle_.rigid;
+    contact.restitution = obstacle_.restitution;
     contact.point = point;
+    contact.acts_at = contact.a.of(body_.positions);
     contact.normal = -outwards / steep;
     contact.room = room_to_squeeze(body_, *place, -field.gradient.normalized(), -distance);
-    const Vector3f v = contact.a.of(body_.velocities) - rigid_.velocity_at(point);
+    const Vector3f v = contact.a.of(body_.velocities) - rigid_.velocity_at(contact.acts_at);
     const float inside_edge = obstacle_.rounding + radius;
     if (const auto before = distance_before(*place, corner, outwards / steep))
       complete_from(contact, *before - inside_edge, friction_, step_);

@@ -80,10 +80,12 @@ class ObstacleTriangle {
 
   /// @param front  1 or -1: the front is the side from which it is wound counterclockwise, or the other one
   /// @param inside  a place of the point's body, before the substep
+  /// @param allowance  metres: TouchPoint::allowance
   std::optional<ObstacleHit> meet(const PointWay& way, const Eigen::Vector3f& inside, float spacing,
-                                  float front) const {
+                                  float front, float allowance) const {
     if (!has_area()) return {};
     const float near = kNear * spacing;
+    if (allowance > 0) return meet_outside(way, inside, spacing, front, allowance);
     float side = front;
     float from = side * height(way.from);
     bool is_deep = false;
@@ -104,6 +106,23 @@ class ObstacleTriangle {
   }
 
  private:
+  /// Of a point outside of the drawn surface: it is as deep behind the triangle as `allowance` says, or deeper, and the line to it from the
+  /// inside of its body crosses the triangle. Where a body is pressed flat, its inside may be a little behind the triangle, too.
+  std::optional<ObstacleHit> meet_outside(const PointWay& way, const Eigen::Vector3f& inside, float spacing,
+                                          float front, float allowance) const {
+    const float near = kNear * spacing;
+    const float to = front * height(way.to) - rounding_ + allowance, of_inside = front * height(inside);
+    if (to > near || of_inside < -kPressedThrough * spacing) return {};
+    const ObstacleHit hit{front * normal(), to};
+    if (of_inside <= 0) return is_over(way.to, near) ? std::optional(hit) : std::nullopt;
+    const float from = front * height(way.from);
+    const Eigen::Vector3f& before = from < 0 ? inside : way.from;
+    const Eigen::Vector3f& after = from < 0 ? way.from : way.to;
+    const float above = front * height(before), below = front * height(after);
+    if (!is_over(before + above / (above - below) * (after - before), near)) return {};
+    return hit;
+  }
+
   const std::array<Eigen::Vector3f, 3>& triangle_;
   const KnownTriangles::Face& face_;
   Bounds<3> box_;

@@ -25,7 +25,6 @@ struct ContactRigid {
   float inverse_mass = 0;             ///< 1/kg; 0: nothing moves it
   Eigen::Matrix3f inverse_inertia = Eigen::Matrix3f::Zero();  ///< 1/(kg m^2)
   float friction = 0.5f;
-  float restitution = 0;
   /// Has a value if the engine lets the body move along some axes only, or if what it lies on holds it (supports.h). None: it is free.
   std::optional<HeldMobility> held = {};
 

@@ -40,6 +40,7 @@ struct Obstacle {
   ObstacleKind kind = ObstacleKind::kPlane;
   std::uint32_t rigid = 0;  ///< index of its ContactRigid
   float friction = 1;       ///< of this shape, times its body's
+  float restitution = 0;
   Eigen::Vector3f position{0, 0, 0};
   Eigen::Matrix3f rotation = Eigen::Matrix3f::Identity();  ///< from its frame to the world's
   Eigen::Vector3f extent{0, 0, 0};                         ///< metres, by kind

@@ -16,6 +16,8 @@ constexpr float kInside = 0.02f;   // distance of the tested places from an edge
 constexpr float kGoesOn = 0.25f;   // a face goes on if there is something this far beyond its edge
 constexpr float kLevel = 0.0025f;  // up to this height something is level with a face
 constexpr float kDeepest = 0.25f;  // the longest way out through another face
+constexpr float kPressedIn =
+    2;  // and through one that the body is in front of, or not farther behind than kDeepest
 
 /// Cosines and sines of an eighth and of a sixteenth of a turn.
 constexpr float kEighth = 0.70710678f, kCos = 0.92387953f, kSin = 0.38268343f;
@@ -118,7 +120,7 @@ bool Beside::face_goes_on(const Vector3f& point, const Vector3f& along) {
 }
 
 std::optional<Separation> Beside::way_out(const Vector3f& point, const Separation& nearest,
-                                          const Vector3f& from) {
+                                          const Vector3f& from, const Vector3f& inside) {
   if (none()) return {};
   const auto has_another_behind = [&](const Separation& face) {
     return is_inside_others(own_->to_world(point + (kInside * spacing_ - face.distance) * face.normal), 0);
@@ -127,14 +129,23 @@ std::optional<Separation> Beside::way_out(const Vector3f& point, const Separatio
   std::optional<Separation> best;
   for_each_plane(*own_, [&](const Vector4f& plane) {
     const Separation face{plane.head<3>().dot(point) - plane[3], plane.head<3>()};
-    if (face.distance < -kDeepest * spacing_ || (best && face.distance <= best->distance)) return;
-    if (face.normal.dot(nearest.normal) > 0.999f) return;
-    if (plane.head<3>().dot(from) - plane[3] < -kDeepest * spacing_) return;
+    const auto height = [&](const Vector3f& place) { return face.normal.dot(place) - plane[3]; };
+    const float deepest = -spacing_ * (height(inside) > -kDeepest * spacing_ ? kPressedIn : kDeepest);
+    if (face.distance < deepest || (best && face.distance <= best->distance)) return;
+    if (face.normal.dot(nearest.normal) > 0.999f || height(from) < deepest) return;
     const Vector3f place = point - face.distance * face.normal;
     if (separation(*own_, place).distance > 2 * kLevel * spacing_ || has_another_behind(face)) return;
     best = face;
   });
   return best;
+}
+
+bool Beside::is_covered(const Vector3f& place, const Vector3f& normal) {
+  if (none()) return false;
+  const auto is_other_at = [&](float beyond, float most) {
+    return is_inside_others(own_->to_world(place + beyond * spacing_ * normal), most * spacing_);
+  };
+  return is_other_at(kInside, 0) || is_other_at(kGoesOn, kLevel);
 }
 
 }  // namespace softcell::ppu

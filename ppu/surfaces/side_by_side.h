@@ -32,9 +32,15 @@ class Beside {
   /// @param point    slightly within the obstacle, in its frame; so is the result
   /// @param nearest  its nearest face
   /// @param from     where the point was before, in the same frame: a face that it was well behind is no way out
+  /// @param inside   a place of the point's body, in the same frame: a face that it is in front of, or hardly behind, is a way out from
+  ///                 deeper places, too
   /// @return  none: the nearest face is free, or no other face is near
   std::optional<Separation> way_out(const Eigen::Vector3f& point, const Separation& nearest,
-                                    const Eigen::Vector3f& from);
+                                    const Eigen::Vector3f& from, const Eigen::Vector3f& inside);
+
+  /// Whether another shape lies behind a face of the obstacle, or goes on with it.
+  /// @param place  on the face, in the obstacle's frame
+  bool is_covered(const Eigen::Vector3f& place, const Eigen::Vector3f& normal);
 
  private:
   struct Other {

@@ -53,6 +53,28 @@ class Box2dAttachments : public testing::TestWithParam<ContactMethod> {};
 INSTANTIATE_TEST_SUITE_P(Methods, Box2dAttachments,
                          testing::Values(ContactMethod::kSpheres, ContactMethod::kSurface), name_of_method);
 
+/// Box2D does not move a disabled body: what hangs on it hangs as on a static one, and gives it no velocity.
+TEST_P(Box2dAttachments, ADisabledBodyHoldsStill) {
+  World2d w(9.81f, GetParam());
+  b2BodyDef definition;
+  definition.type = b2_dynamicBody;
+  definition.position = {0, 2};
+  definition.linearVelocity = {1, 0};
+  b2Body* const box = w.box2d.CreateBody(&definition);
+  b2PolygonShape shape;
+  shape.SetAsBox(0.2f, 0.2f);
+  box->CreateFixture(&shape, 10);
+  box->SetEnabled(false);
+  SoftBody<2>& body = w.soft.add(rectangle_model({6, 3}, firm()), {0, 1.65f});
+  const AttachmentId weld = w.soft.attach(body, Patch<2>::of_surface({0, 1.8f}, 0.2f), *box);
+  for (int i = 0; i < 240; ++i) w.soft.step(kStepOf2d);
+  const auto ends = w.soft.attachment_ends(weld);
+  ASSERT_TRUE(ends);
+  EXPECT_LT((ends->patch - ends->other).norm(), 0.1f * kCellOf2d);
+  EXPECT_EQ(box->GetLinearVelocity().y, 0);
+  EXPECT_EQ(box->GetPosition().y, 2);
+}
+
 /// A hung body with another standing on it carries both, and no rope is longer than its length by more than 1 %.
 TEST_P(Box2dAttachments, AHungBodyCarriesOneThatStandsOnIt) {
   World2d w(9.81f, GetParam());

@@ -703,6 +703,8 @@ TEST(Attachments, SayWhatIsOutOfRange) {
   EXPECT_EQ(refuse(patch, {.kind = AttachmentKind::kRope, .length = -2}),
             "an attachment's length is -2; it must be in metres, above 0, and finite");
   EXPECT_EQ(refuse(patch, {.length = 2}), "an attachment has a length and is no rope; only ropes have one");
+  EXPECT_EQ(refuse(patch, {.point = Vector3f(0, 1, 0)}),
+            "an attachment has a point and is a weld; only hinges and ropes have one");
   EXPECT_EQ(refuse(patch, {.kind = AttachmentKind::kRope}),
             "a rope to the world has no point; it needs the place of its other end");
   EXPECT_EQ(refuse(patch, {.kind = AttachmentKind::kHinge, .axis = {0, 0, 0}}),

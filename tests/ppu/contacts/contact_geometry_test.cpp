@@ -536,8 +536,17 @@ class TwoBoxes {
   /// Of a point of the world, by the nearest face.
   std::optional<Separation> way_out(const Vector3f& point) { return way_out(point, point); }
   std::optional<Separation> way_out(const Vector3f& point, const Vector3f& from) {
+    return way_out(point, from, from);
+  }
+  /// @param inside  of the point's body
+  std::optional<Separation> way_out(const Vector3f& point, const Vector3f& from, const Vector3f& inside) {
     const Vector3f own = obstacles_[0].to_own(point);
-    return beside_.way_out(own, separation(obstacles_[0], own), obstacles_[0].to_own(from));
+    return beside_.way_out(own, separation(obstacles_[0], own), obstacles_[0].to_own(from),
+                           obstacles_[0].to_own(inside));
+  }
+  /// Of the first box's side in the plane x = 0, or its upper one in y = 0. @param place  in the world
+  bool is_covered(const Vector3f& place, const Vector3f& normal) {
+    return beside_.is_covered(obstacles_[0].to_own(place), normal);
   }
 
  private:
@@ -545,6 +554,14 @@ class TwoBoxes {
   std::array<Obstacle, 2> obstacles_;
   Beside beside_;
 };
+
+TEST(Beside, AFaceIsCoveredWhereAnotherShapeIsBehindIt) {
+  EXPECT_TRUE(TwoBoxes({2, -1, 0}).is_covered({0, -0.5f, 1}, Vector3f::UnitX()));
+  EXPECT_FALSE(TwoBoxes({2, -1, 0}).is_covered({-1, 0, 1}, Vector3f::UnitY())) << "the upper side";
+  EXPECT_TRUE(TwoBoxes({2.2f, -1, 0}).is_covered({0, -0.5f, 1}, Vector3f::UnitX())) << "over a small gap";
+  EXPECT_FALSE(TwoBoxes({2.3f, -1, 0}).is_covered({0, -0.5f, 1}, Vector3f::UnitX())) << "over a large one";
+  EXPECT_FALSE(TwoBoxes({2, -1.7f, 0}).is_covered({0, -0.5f, 1}, Vector3f::UnitX())) << "above a step";
+}
 
 TEST(Beside, FlushShapesHaveNoEdgeBetweenThem) {
   EXPECT_TRUE(TwoBoxes({2, -1, 0}).face_goes_on({0, 0, 0}));
@@ -577,6 +594,10 @@ TEST(Beside, TheWayOutIsNotIntoTheNextShape) {
   EXPECT_FALSE(TwoBoxes({4, -1, 0}).way_out(point)) << "nothing is beside it there";
   EXPECT_FALSE(TwoBoxes({2, -1, 0}).way_out({-0.5f, -0.02f, 0.5f})) << "the upper side is the nearest";
   EXPECT_FALSE(TwoBoxes({2, -1, 0}).way_out({-1e-4f, -0.5f, 0.5f})) << "deep within both";
+  const Vector3f deep(-1e-4f, -0.5f, 0.5f);
+  EXPECT_TRUE(TwoBoxes({2, -1, 0}).way_out(deep, deep, {0, 1, 0})) << "its body is above";
+  EXPECT_TRUE(TwoBoxes({2, -1, 0}).way_out(deep, deep, {0, -0.1f, 0})) << "its body is pressed flat";
+  EXPECT_FALSE(TwoBoxes({2, -1, 0}).way_out(deep, deep, {0, -0.6f, 0})) << "its body is not above";
   // At the foot of a wall the ground pushes upwards, although the wall is there, too.
   EXPECT_FALSE(TwoBoxes({1.99f, 0.5f, 0}).way_out({-0.005f, -0.002f, 0}));
 }

@@ -6,6 +6,7 @@
 #include <box2d/b2_edge_shape.h>
 #include <box2d/b2_motor_joint.h>
 #include <box2d/b2_mouse_joint.h>
+#include <box2d/b2_wheel_joint.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -227,6 +228,66 @@ TEST_P(FlatContacts, KeepMomentum) {
   EXPECT_LT((momentum() - before).norm(), 1e-4 * before.norm() + 1e-4);
 }
 
+/// A plate on two springs, as a car is, with a soft load in its middle: it lies level however fast all of it moves.
+TEST_P(FlatContacts, ALoadStaysWhereItIsOnWhatMovesFast) {
+  for (const float speed : {0.0f, 20.0f}) {
+    const auto w = world();
+    b2BodyDef definition;
+    definition.type = b2_kinematicBody;
+    definition.linearVelocity = {speed, 0};
+    b2Body* const base = w->box2d.CreateBody(&definition);
+    b2Body* const plate = w->add_box({0, 0.5f}, {1, 0.1f}, 10);
+    plate->SetLinearVelocity({speed, 0});
+    for (const float x : {-0.9f, 0.9f}) {
+      b2WheelJointDef spring;
+      spring.Initialize(base, plate, {x, 0.5f}, {0, 1});
+      spring.stiffness = 2000;
+      spring.damping = 100;
+      w->box2d.CreateJoint(&spring);
+    }
+    SoftBody<2>& body = w->soft.add(rectangle_model({4, 4}, calm(0.1f)), {0, 0.82f});
+    body.add_velocity({speed, 0});
+    w->run(4);
+    // The two springs bring a load's moment about the middle to rest at this angle.
+    const double offset = double{plate->GetAngle()} * 2 * 2000 * 0.9 * 0.9 / (mass_of(body) * 9.81);
+    EXPECT_NEAR(offset, 0, 0.005) << speed << " m/s";
+  }
+}
+
+/// A disc without friction does not begin to turn.
+TEST_P(FlatContacts, KeepAngularMomentum) {
+  const auto w = world(0);
+  SoftBodySettings settings = calm(0.1f);
+  settings.friction = 0;
+  SoftBody<2>& body = w->soft.add(rectangle_model({4, 4}, settings), {-0.8f, 0.15f});
+  body.add_velocity({8, 0});
+  b2BodyDef definition;
+  definition.type = b2_dynamicBody;
+  b2Body* const disc = w->box2d.CreateBody(&definition);
+  b2CircleShape circle;
+  circle.m_radius = 0.25f;
+  disc->CreateFixture(&circle, 20)->SetFriction(0);
+  const auto spin = [&] {
+    double sum = double{disc->GetInertia()} * double{disc->GetAngularVelocity()};
+    const auto add = [&](double mass, double x, double y, double vx, double vy) {
+      sum += mass * (x * vy - y * vx);
+    };
+    for (std::size_t i = 0; i < body.positions().size(); ++i) {
+      const Vector2d x = body.positions()[i].cast<double>(), v = body.velocities()[i].cast<double>();
+      add(double{body.model().masses()[i]}, x.x(), x.y(), v.x(), v.y());
+    }
+    const b2Vec2 x = disc->GetWorldCenter(), v = disc->GetLinearVelocity();
+    add(double{disc->GetMass()}, double{x.x}, double{x.y}, double{v.x}, double{v.y});
+    return sum;
+  };
+  const double before = spin();
+  w->run(0.5f);
+  EXPECT_GT(disc->GetLinearVelocity().Length(), 0.3f) << "they have not met";
+  EXPECT_NEAR(spin(), before, 0.005 * std::abs(before));
+  EXPECT_LT(std::abs(disc->GetAngularVelocity()) * circle.m_radius,
+            0.1f * disc->GetLinearVelocity().Length());
+}
+
 /// A needle stands up from the floor, narrower than the circles of a body are apart.
 TEST_P(FlatContacts, AThinThingStaysOutside) {
   const auto w = world();
@@ -425,6 +486,22 @@ TEST_P(FlatContacts, BoxesSideBySideSlowDownWhatSlidesAsOneFloor) {
       }
 }
 
+/// A soft body is pressed into the boxes by its weight in each substep, near the joint of two of them, too.
+TEST_P(FlatContacts, BoxesSideBySideDoNotStopASoftBody) {
+  for (const float alpha : {0.1f, 0.15f, 0.4f}) {
+    const auto w = world();
+    for (int i = -4; i < 40; ++i)
+      w->add_box({0.37f * static_cast<float>(i), -0.5f}, {0.185f, 0.5f})->GetFixtureList()->SetFriction(0);
+    SoftBodySettings settings = calm(0.1f);
+    settings.alpha = alpha;
+    settings.friction = 0;
+    SoftBody<2>& body = w->soft.add(rectangle_model({5, 3}, settings), {0, 0.16f});
+    body.add_velocity({2, 0});
+    w->run(4);
+    EXPECT_NEAR(body.linear_momentum().x() / mass_of(body), 2, 0.01) << "alpha " << alpha;
+  }
+}
+
 /// Of two restitutions Box2D takes the larger one.
 TEST_P(FlatContacts, RestitutionIsTheLargerOfBoth) {
   for (const auto& [of_body, of_floor] : {std::pair(0.0f, 0.6f), {0.6f, 0.2f}}) {
@@ -445,6 +522,31 @@ TEST_P(FlatContacts, RestitutionIsTheLargerOfBoth) {
     }
     EXPECT_NEAR(top, 0.36f * 2, 0.05f * 2);
   }
+}
+
+/// A floor and a trampoline far away, a sensor too, are fixtures of one body.
+TEST_P(FlatContacts, RestitutionIsThatOfTheFixture) {
+  float highest[2] = {};
+  for (const bool with_others : {false, true}) {
+    const auto w = world();
+    b2Body* const ground = w->add_box({0, -1}, {20, 1});
+    if (with_others)
+      for (const bool sensor : {false, true}) {
+        b2PolygonShape box;
+        box.SetAsBox(1, 1, {sensor ? 0.0f : 50.0f, 0}, 0);
+        b2Fixture* const fixture = ground->CreateFixture(&box, 0);
+        fixture->SetRestitution(0.9f);
+        fixture->SetSensor(sensor);
+      }
+    SoftBody<2>& body = w->soft.add(rectangle_model({4, 4}, calm()), {0, 2.125f});
+    bool was_down = false;
+    for (int i = 0; i < 240; ++i) {
+      w->soft.step(kStep2d);
+      was_down = was_down || body.linear_momentum().y() > 0;
+      if (was_down) highest[with_others] = std::max(highest[with_others], body.centre_of_mass().y());
+    }
+  }
+  EXPECT_EQ(highest[0], highest[1]);
 }
 
 /// A box of ten times its mass lies on a body, and goes no deeper.

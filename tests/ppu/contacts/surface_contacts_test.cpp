@@ -71,6 +71,102 @@ TEST(SurfaceContacts, NothingPassesAThinWall) {
   }
 }
 
+/// At 100 m/s small cells go 40 of their length in a substep, and the wall is a tenth of one thick.
+TEST(SurfaceContacts, NothingSmallPassesAThinWall) {
+  constexpr float kCell = 0.02f;
+  for (const int kind : {0, 1, 2}) {
+    for (const float speed : {40.0f, 70.0f, 100.0f}) {
+      ContactWorld w({0, 0, 0});
+      const btVector3 half(0.05f * kCell, 3, 3);
+      std::unique_ptr<btCollisionShape> wall = std::make_unique<btBoxShape>(half);
+      if (kind == 1) {
+        auto hull = std::make_unique<btConvexHullShape>();
+        for (int i = 0; i < 8; ++i)
+          hull->addPoint({(i & 1 ? 1.0f : -1.0f) * half.x(), (i & 2 ? 1.0f : -1.0f) * half.y(),
+                          (i & 4 ? 1.0f : -1.0f) * half.z()});
+        hull->setMargin(0);
+        wall = std::move(hull);
+      }
+      btRigidBody& body_of_wall = w.add(std::move(wall), 0, {1, 0, 0});
+      if (kind == 2) {
+        body_of_wall.setCollisionFlags(body_of_wall.getCollisionFlags() |
+                                       btCollisionObject::CF_KINEMATIC_OBJECT);
+        body_of_wall.setLinearVelocity({-1, 0, 0});
+      }
+      SoftBody<3>& body = w.add(make_sphere(0.1f, 8), settings_of(kCell), {0.02f, 0.03f, 0.01f});
+      body.add_velocity({speed, 0.2f * speed, 0.1f * speed});
+      body.add_angular_velocity({10, 20, 30});
+      for (int i = 0; i < 30; ++i) {
+        w.run(1);
+        for (const Vector3f& p : ContactWorld::drawn(body))
+          ASSERT_LT(p.x(), 1.02f) << "wall " << kind << ", " << speed << " m/s, frame " << i;
+      }
+    }
+  }
+}
+
+/// What a round body lies on.
+enum class Ground { kPlane, kBox, kThinBox, kTriangles, kTiles };
+
+/// A ball's lattice reaches beyond its drawn surface, and so into the ground. Nothing else holds these corners than contacts of their own.
+struct Depth {
+  float drawn, particles;  ///< in cells, at the end
+};
+Depth depth_of_ball(Ground ground, float alpha, float gravity, float cell) {
+  btTriangleMesh triangles;
+  ContactWorld w({0, -gravity, 0});
+  switch (ground) {
+    case Ground::kPlane:
+      w.add(std::make_unique<btStaticPlaneShape>(btVector3(0, 1, 0), 0), 0, {0, 0, 0});
+      break;
+    case Ground::kBox:
+      w.add_floor();
+      break;
+    case Ground::kThinBox:
+      w.add(std::make_unique<btBoxShape>(btVector3(5, cell, 5)), 0, {0, -cell, 0});
+      break;
+    case Ground::kTriangles:
+      triangles.addTriangle({-20, 0, -20}, {-20, 0, 20}, {20, 0, 20});
+      triangles.addTriangle({-20, 0, -20}, {20, 0, 20}, {20, 0, -20});
+      w.add(std::make_unique<btBvhTriangleMeshShape>(&triangles, true), 0, {0, 0, 0});
+      break;
+    case Ground::kTiles:  // four meet below the ball
+      for (const float x : {-1.0f, 1.0f})
+        for (const float z : {-1.0f, 1.0f})
+          w.add(std::make_unique<btBoxShape>(btVector3(1, 2 * cell, 1)), 0, {x, -2 * cell, z});
+      break;
+  }
+  SoftBodySettings settings = settings_of(cell, alpha);
+  settings.half_width = 1;
+  const SoftBody<3>& body = w.add(make_sphere(3 * cell, 8), settings, {0, 3.1f * cell, 0});
+  w.run(180, 1);
+  Depth depth{-ContactWorld::lowest_drawn(body) / cell, 0};
+  for (const Vector3f& p : body.positions()) depth.particles = std::max(depth.particles, -p.y() / cell);
+  return depth;
+}
+
+TEST(SurfaceContacts, NoParticleOfABallSinksIntoAnyGround) {
+  for (const float gravity : {9.81f, 300.0f})
+    for (const float alpha : {0.05f, 0.3f}) {
+      const Depth on_plane = depth_of_ball(Ground::kPlane, alpha, gravity, 0.05f);
+      for (const Ground ground : {Ground::kBox, Ground::kThinBox, Ground::kTriangles}) {
+        const Depth depth = depth_of_ball(ground, alpha, gravity, 0.05f);
+        EXPECT_LT(depth.drawn, 0.1f) << "ground " << static_cast<int>(ground) << ", alpha " << alpha;
+        EXPECT_LT(depth.particles, on_plane.particles + 0.15f)
+            << "ground " << static_cast<int>(ground) << ", alpha " << alpha << ", " << gravity << " m/s^2";
+      }
+    }
+}
+
+TEST(SurfaceContacts, NothingSinksInWhereTilesMeet) {
+  for (const float cell : {0.02f, 0.01f})
+    for (const float alpha : {0.1f, 0.3f, 0.8f}) {
+      const Depth depth = depth_of_ball(Ground::kTiles, alpha, 9.81f, cell);
+      EXPECT_LT(depth.drawn, 0.1f) << "cells of " << cell << " m, alpha " << alpha;
+      EXPECT_LT(depth.particles, 1.8f) << "cells of " << cell << " m, alpha " << alpha;
+    }
+}
+
 /// A wall of triangles has no thickness. It holds from both sides, whichever way it is wound: two triangles, or 1,800 small ones.
 TEST(SurfaceContacts, NothingPassesAWallOfTriangles) {
   constexpr float kCell = 0.1f;

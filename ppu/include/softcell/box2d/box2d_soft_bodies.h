@@ -112,8 +112,8 @@ class Box2dSoftBodies {
   /// kind of attachment. The message says what was found and what was expected.
   AttachmentId attach(const SoftBody<2>& body, const Patch<2>& patch,
                       const AttachmentSettings<2>& settings = {});
-  /// Holds a patch to a rigid body. When the rigid body is destroyed, the attachment ends with the next step. Detach it yourself if you
-  /// create another b2Body before that step: Box2D may reuse the address.
+  /// Holds a patch to a rigid body; to a disabled one as to a static one. When the rigid body is destroyed, the attachment ends with the
+  /// next step. Detach it yourself if you create another b2Body before that step: Box2D may reuse the address.
   /// @throws std::invalid_argument  as above; the b2Body is not in the world, or is a particle of a soft body.
   AttachmentId attach(const SoftBody<2>& body, const Patch<2>& patch, b2Body& rigid,
                       const AttachmentSettings<2>& settings = {});

@@ -50,7 +50,7 @@ struct AttachmentSettings {
   using Vector = Eigen::Vector<float, kDimension>;
 
   AttachmentKind kind = AttachmentKind::kWeld;
-  /// Metres. The place of a hinge; without a value, the middle of the patch. The other end of a rope that goes to the world or to a rigid
+  /// Metres, of a hinge or rope. The place of a hinge; without a value, the middle of the patch. The other end of a rope that goes to the world or to a rigid
   /// body; without a value, the rigid body's centre.
   std::optional<Vector> point = {};
   Vector axis = Vector::UnitX();  ///< of a hinge in three dimensions; its length may be any but 0
@@ -101,7 +101,8 @@ struct EndedAttachment {
   Reason reason = Reason::kBroken;
 };
 
-/// @throws std::invalid_argument  a value is out of its range, or given for another kind; the message names it and the range.
+/// @throws std::invalid_argument  a value is out of its range, or a length or point is given for a kind that has none; the message names it
+///         and the range.
 template <int kDimension>
 void validate(const AttachmentSettings<kDimension>& settings);
 extern template void validate(const AttachmentSettings<2>& settings);
