@@ -72,6 +72,14 @@ std::span<const std::byte> image_file(std::string_view name, bool checked) {
   return checked ? file.checked_elf : file.elf;
 }
 
-std::span<const std::byte> spu_image_file(std::string_view name) { return files_of(name).spu_elf; }
+std::span<const std::byte> spu_image_file(std::string_view name) {
+  const ImageFile& file = files_of(name);
+  if (file.spu_elf.empty())
+    throw std::runtime_error(
+        "kernel " + std::string(name) +
+        " has no executable for the SPU: softcell was built without SOFTCELL_SPU_CXX, and "
+        "spu_kernels/spu_elf has none");
+  return file.spu_elf;
+}
 
 }  // namespace softcell::spu_kernels
