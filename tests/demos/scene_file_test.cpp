@@ -433,6 +433,12 @@ TEST_F(SceneFile, AttachmentsAreReadAndCheckedByName) {
   says("body = \"a\"\nkind = \"rope\"\n",
        "attach 1 is a rope to the world; it needs the point of its other end");
   says("body = \"a\"\nlength = 2\n", "attach 1: an attachment has a length and is no rope");
+  says("body = \"a\"\naxis = [0, 0, 1]\n",
+       "attach 1 is a weld and has the field 'axis'; only hinges have it");
+  says("body = \"a\"\npoint = [0, 0, 1]\n", "has the field 'point'; only hinges and ropes have it");
+  says("body = \"a\"\nkind = \"hinge\"\ncolour = \"#123456\"\n",
+       "bad.toml:17:1: attach 1 is a hinge and has the field 'colour'; only ropes have it");
+  says("body = \"a\"\nthickness = 1\n", "has the field 'thickness'; only ropes have it");
   says("body = \"a\"\nbreak_force = 0\n", "break_force of attach 1 is 0");
 }
 
