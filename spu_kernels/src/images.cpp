@@ -58,7 +58,9 @@ namespace {
 const ImageFile& files_of(std::string_view name) {
   for (const ImageFile& file : image_files())
     if (file.name == name) return file;
-  throw std::runtime_error("there is no kernel " + std::string(name));
+  std::string names;
+  for (const ImageFile& file : image_files()) names += (names.empty() ? "" : ", ") + std::string(file.name);
+  throw std::runtime_error("softcell has no kernel " + std::string(name) + "; there are: " + names);
 }
 
 }  // namespace
