@@ -41,7 +41,13 @@ function(softcell_compile_spu_sources target)
   target_compile_options(${target} PRIVATE
     -U_FORTIFY_SOURCE ${SOFTCELL_KERNEL_FLAGS} ${SOFTCELL_KERNEL_CXX_FLAGS} ${arg_OPTIONS})
   set_target_properties(${target} PROPERTIES CXX_STANDARD 17)  # CMake's own option goes last
-  target_include_directories(${target} PRIVATE ${SOFTCELL_SDK_DIR}/host ${SOFTCELL_SDK_DIR}/.. ${arg_INCLUDES})
+  # The flags of somebody's project concern its own code, not the SDK.
+  set(system SYSTEM)
+  if(SOFTCELL_WARNINGS_AS_ERRORS)
+    set(system)
+  endif()
+  target_include_directories(${target} ${system} PRIVATE ${SOFTCELL_SDK_DIR}/host ${SOFTCELL_SDK_DIR}/..)
+  target_include_directories(${target} PRIVATE ${arg_INCLUDES})
   if(SOFTCELL_PRECOMPILED_HEADERS AND arg_HEADERS)
     target_precompile_headers(${target} REUSE_FROM ${arg_HEADERS})
     # No compiler cache: it takes as long to find such a kernel as the compiler to make it.
