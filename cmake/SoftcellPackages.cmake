@@ -23,6 +23,7 @@ set(CPACK_STRIP_FILES ON)
 set(CPACK_COMPONENTS_ALL development documentation)
 if(TARGET softcell)
   list(APPEND CPACK_COMPONENTS_ALL command)
+  set(CPACK_PROJECT_CONFIG_FILE ${CMAKE_CURRENT_LIST_DIR}/SoftcellCheckPackaging.cmake)
 endif()
 
 set(CPACK_DEB_COMPONENT_INSTALL ON)

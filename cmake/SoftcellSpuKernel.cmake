@@ -41,7 +41,7 @@ function(softcell_compile_spu_sources target)
   target_compile_options(${target} PRIVATE
     -U_FORTIFY_SOURCE ${SOFTCELL_KERNEL_FLAGS} ${SOFTCELL_KERNEL_CXX_FLAGS} ${arg_OPTIONS})
   set_target_properties(${target} PROPERTIES CXX_STANDARD 17)  # CMake's own option goes last
-  # In a user's project the SDK's headers are silent, whatever warnings the project asks for.
+  # The flags of somebody's project concern its own code, not the SDK.
   set(system SYSTEM)
   if(SOFTCELL_WARNINGS_AS_ERRORS)
     set(system)

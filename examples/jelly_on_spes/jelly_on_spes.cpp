@@ -35,6 +35,8 @@ int main(int argc, char** argv) try {
 
   // The soft body. Six SPEs step and skin it.
   const ppu::TriangleMesh mesh = ppu::import_mesh(argv[1]);
+  const auto painted = mesh.materials.empty() ? nullptr : mesh.materials[0].base_texture.picture;
+  if (painted == nullptr) throw std::runtime_error("expected a mesh whose material has a texture");
   const auto model = ppu::make_soft_body_model(mesh, {.cell_size = 0.1f, .alpha = 0.06f, .damping = 0.2f});
   ppu::SpeRuntime spes;
   ppu::BulletSoftBodies bodies(world, spes);
@@ -48,8 +50,6 @@ int main(int argc, char** argv) try {
   const ppu::DrawOrder order = ppu::draw_order(*model);
   render::SkinnedDraw skin{.mesh = renderer.add_mesh(order.indices), .colour = {1, 1, 1}};
   renderer.set_texture_coordinates(skin.mesh, order.reorder(mesh.texture_coordinates));
-  const auto painted = mesh.materials.at(0).base_texture.picture;
-  if (painted == nullptr) throw std::runtime_error("the jelly's material has no texture");
   render::Image texture(painted->width, painted->height);
   texture.rgba = painted->rgba;
   skin.texture = renderer.add_texture(texture);

@@ -16,7 +16,7 @@ namespace softcell::ppu {
 inline bool passes_time(const char* what, float step) {
   if (!(step >= 0) || !std::isfinite(step))
     throw std::invalid_argument(std::string(what) + " of " + base::shortest(step) +
-                                " s; expected are 0 s or more");
+                                " s; expected 0 s or more" + (step >= 0 ? ", and finite" : ""));
   return step > 0;
 }
 

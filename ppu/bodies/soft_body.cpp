@@ -534,11 +534,12 @@ void SoftBody<kDimension>::reset_deformation() {
   const decltype(motion.spin) omega = inverse(motion_of(*this).inertia) * motion.spin;
   forget_rotations();
   lost_->forget();
-  add_angular_velocity(to_float(omega));
+  turn_velocities(to_float(omega));
 }
 
 template <int kDimension>
 void SoftBody<kDimension>::add_velocity(const Vector& dv) {
+  SC_ASSERT(dv.allFinite(), "infinity or NaN is added to the velocities of {} particles", v_.size());
   for (Vector& v : v_) v += dv;
   ++revision_;
 }
@@ -552,6 +553,13 @@ void SoftBody<kDimension>::add_particle_velocity(std::size_t particle, const Vec
 
 template <int kDimension>
 void SoftBody<kDimension>::add_angular_velocity(const AxialVector& dw) {
+  SC_ASSERT(cross(dw, Vector(Vector::Zero())).allFinite(),  // infinity times 0 is NaN
+            "infinity or NaN is added to the velocities of {} particles", v_.size());
+  turn_velocities(dw);
+}
+
+template <int kDimension>
+void SoftBody<kDimension>::turn_velocities(const AxialVector& dw) {
   const Vector centre = centre_of_mass();
   for (std::size_t i = 0; i < x_.size(); ++i) v_[i] += cross(dw, Vector(x_[i] - centre));
   ++revision_;

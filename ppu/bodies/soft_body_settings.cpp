@@ -14,7 +14,7 @@ namespace {
 void require(bool in_range, const char* name, float value, const char* range) {
   if (in_range && std::isfinite(value)) return;
   throw std::runtime_error(std::string("a soft body's ") + name + " is " + base::shortest(value) +
-                           "; it must be " + range);
+                           "; it must be " + range + (in_range ? ", and finite" : ""));
 }
 
 }  // namespace

@@ -199,7 +199,7 @@ namespace {
 SkinField field_of(const CellsByIndex& cells, float margin, const Outside2d& outside) {
   if (!(margin >= 0 && margin <= kMaxSkinMargin))
     throw std::invalid_argument("a skin with a margin of " + base::shortest(margin) +
-                                " cells; expected are 0 to " + base::shortest(kMaxSkinMargin));
+                                " cells; expected 0 to " + base::shortest(kMaxSkinMargin));
   return outside ? SkinField::of_shape(cells, margin, outside) : SkinField::of_cells(cells, margin);
 }
 

@@ -280,6 +280,10 @@ TriangleMesh make_sphere(float radius, int subdivisions) {
 TriangleMesh make_torus(float major, float minor, int ring_segments, int tube_segments) {
   require_length(major, "a torus's major radius");
   require_length(minor, "a torus's minor radius");
+  if (!(minor < major)) {
+    throw std::invalid_argument("a torus's minor radius is " + base::shortest(minor) +
+                                "; it must be less than its major radius, " + base::shortest(major));
+  }
   require_count(ring_segments, 3, 2048, "a torus's ring segments");
   require_count(tube_segments, 3, 2048, "a torus's tube segments");
   const auto normal = [](double angle, double tube_angle) {

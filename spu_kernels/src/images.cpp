@@ -58,7 +58,9 @@ namespace {
 const ImageFile& files_of(std::string_view name) {
   for (const ImageFile& file : image_files())
     if (file.name == name) return file;
-  throw std::runtime_error("there is no kernel " + std::string(name));
+  std::string names;
+  for (const ImageFile& file : image_files()) names += (names.empty() ? "" : ", ") + std::string(file.name);
+  throw std::runtime_error("softcell has no kernel " + std::string(name) + "; there are: " + names);
 }
 
 }  // namespace
@@ -72,6 +74,14 @@ std::span<const std::byte> image_file(std::string_view name, bool checked) {
   return checked ? file.checked_elf : file.elf;
 }
 
-std::span<const std::byte> spu_image_file(std::string_view name) { return files_of(name).spu_elf; }
+std::span<const std::byte> spu_image_file(std::string_view name) {
+  const ImageFile& file = files_of(name);
+  if (file.spu_elf.empty())
+    throw std::runtime_error(
+        "kernel " + std::string(name) +
+        " has no executable for the SPU: softcell was built without SOFTCELL_SPU_CXX, and "
+        "spu_kernels/spu_elf has none");
+  return file.spu_elf;
+}
 
 }  // namespace softcell::spu_kernels

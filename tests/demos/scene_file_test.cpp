@@ -382,6 +382,16 @@ TEST_F(SceneFile, LuaInsertsWhereItIsTold) {
   EXPECT_EQ(load_scene_3d(write("s.lua", text)).title, "9 1 8 2 7 6");
 }
 
+// As `lua` itself: editors write a byte order mark, and a script may say which program runs it.
+TEST_F(SceneFile, LuaMayBeginWithAByteOrderMarkAndALineForTheShell) {
+  const std::string mark = "\xEF\xBB\xBF", shell = "#!/usr/bin/lua5.4\n", scene = "return { title = 'a' }";
+  for (const std::string& beginning : {mark, shell, mark + shell})
+    EXPECT_EQ(load_scene_3d(write("s.lua", beginning + scene)).title, "a");
+  EXPECT_BEGINS(refusal("bad.lua", mark + shell + "x = = 1"), "bad.lua:2: unexpected symbol near '='");
+  EXPECT_BEGINS(refusal("bad.lua", "#"), "bad.lua:1: what the script returns is nil");
+  EXPECT_BEGINS(refusal("bad.lua", "\n" + shell + scene), "bad.lua:2: ");
+}
+
 TEST_F(SceneFile, RandomNumbersOfLuaAreTheSameInEveryRun) {
   const std::string file = write("r.lua", "return { world = { gravity = math.random() } }");
   EXPECT_EQ(load_scene_3d(file).gravity, load_scene_3d(file).gravity);
@@ -423,6 +433,12 @@ TEST_F(SceneFile, AttachmentsAreReadAndCheckedByName) {
   says("body = \"a\"\nkind = \"rope\"\n",
        "attach 1 is a rope to the world; it needs the point of its other end");
   says("body = \"a\"\nlength = 2\n", "attach 1: an attachment has a length and is no rope");
+  says("body = \"a\"\naxis = [0, 0, 1]\n",
+       "attach 1 is a weld and has the field 'axis'; only hinges have it");
+  says("body = \"a\"\npoint = [0, 0, 1]\n", "has the field 'point'; only hinges and ropes have it");
+  says("body = \"a\"\nkind = \"hinge\"\ncolour = \"#123456\"\n",
+       "bad.toml:17:1: attach 1 is a hinge and has the field 'colour'; only ropes have it");
+  says("body = \"a\"\nthickness = 1\n", "has the field 'thickness'; only ropes have it");
   says("body = \"a\"\nbreak_force = 0\n", "break_force of attach 1 is 0");
 }
 

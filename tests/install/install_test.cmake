@@ -2,12 +2,14 @@
 
 include(${CMAKE_CURRENT_LIST_DIR}/../support/steps.cmake)
 
-# build_and_test(<example>): in a copy away from our source tree, so that nothing of it is found by chance.
+# build_and_test(<example>): in a copy away from our source tree, so that nothing of it is found by chance. With warnings as a strict
+# project has them: none is of softcell's headers.
 function(build_and_test example)
   file(COPY ${EXAMPLES}/${example} DESTINATION ${SCRATCH})
   set(build ${SCRATCH}/${example}/build)
   step("configuring ${example}" ${CMAKE_COMMAND} -S ${SCRATCH}/${example} -B ${build} -G ${GENERATOR} -DCMAKE_PREFIX_PATH=${prefix}
-    -DCMAKE_CXX_COMPILER=${COMPILER} -DCMAKE_BUILD_TYPE=${BUILD_TYPE} "-DCMAKE_CXX_FLAGS=${warnings}")
+    -DCMAKE_CXX_COMPILER=${COMPILER} -DCMAKE_BUILD_TYPE=${BUILD_TYPE}
+    "-DCMAKE_CXX_FLAGS=-Wall -Wextra -Wconversion -Wsign-conversion -Wshadow -Werror")
   step("building ${example}" ${CMAKE_COMMAND} --build ${build} --parallel 2)
   step("testing ${example}" ${CMAKE_CTEST_COMMAND} --test-dir ${build} --output-on-failure)
 endfunction()
@@ -15,14 +17,7 @@ endfunction()
 set(prefix ${SCRATCH}/prefix)
 file(REMOVE_RECURSE ${SCRATCH})
 step("cmake --install" ${CMAKE_COMMAND} --install ${BUILD} --prefix ${prefix})
-# Whatever a user's compiler warns of, the headers of softcell give it no reason.
-set(warnings -Wall -Wextra -Wconversion -Wsign-conversion -Wshadow -Wold-style-cast -Werror)
-list(JOIN warnings " " warnings)
-foreach(example hello_kernel saxpy ping_pong)
-  build_and_test(${example})
-endforeach()
-set(warnings)
-foreach(example jelly_3d tyre_3d vase_3d jelly_2d jelly_on_spes)
+foreach(example hello_kernel saxpy ping_pong jelly_3d tyre_3d vase_3d jelly_2d jelly_on_spes)
   build_and_test(${example})
 endforeach()
 set(copy ${SCRATCH}/saxpy)

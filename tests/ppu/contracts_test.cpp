@@ -47,6 +47,18 @@ TEST(SoftBodyContractsDeathTest, ABodyStaysWithinTheFiniteWorld) {
                      "move_without_force.*: a body of 8 particles is moved to infinity");
 }
 
+TEST(SoftBodyContractsDeathTest, AVelocityIsFinite) {
+  SoftBody<3> body(cube());
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+  SC_EXPECT_VIOLATES(body.add_velocity({0, kNan, 0}),
+                     "add_velocity.*: infinity or NaN is added to the velocities of 8 particles");
+  SC_EXPECT_VIOLATES(body.add_angular_velocity({0, 0, kInfinity}),
+                     "add_angular_velocity.*: infinity or NaN is added to the velocities of 8 particles");
+  SC_EXPECT_VIOLATES(body.add_angular_velocity({kNan, 0, 0}),
+                     "add_angular_velocity.*: infinity or NaN is added to the velocities of 8 particles");
+}
+
 TEST(SoftBodyContractsDeathTest, ARotationIsNoZero) {
   SoftBody<3> body(cube());
   SC_EXPECT_VIOLATES(body.move_without_force(Eigen::Quaternionf(0, 0, 0, 0), {0, 0, 0}),

@@ -7,6 +7,8 @@
 #include <functional>
 #include <ostream>
 #include <stdexcept>
+#include <string>
+#include <utility>
 
 #include "ppu/mesh_checks.h"
 #include "ppu/numbers/deterministic_math.h"
@@ -89,6 +91,18 @@ TEST(Torus, KeepsItsTubeRadius) {
     const double from_ring = std::hypot(
         std::hypot(static_cast<double>(p.x()), static_cast<double>(p.z())) - 2, static_cast<double>(p.y()));
     ASSERT_NEAR(from_ring, 0.5, 1e-6);
+  }
+}
+
+TEST(Torus, HasATubeSmallerThanItsRing) {
+  for (const auto& [minor, said] : {std::pair(1.0f, "1"), std::pair(2.0f, "2")}) {
+    try {
+      make_torus(1, minor, 8, 8);
+      ADD_FAILURE() << minor;
+    } catch (const std::invalid_argument& error) {
+      EXPECT_EQ(error.what(), std::string("a torus's minor radius is ") + said +
+                                  "; it must be less than its major radius, 1");
+    }
   }
 }
 

@@ -88,6 +88,13 @@ TEST(SoftBodySettings, RefuseTheNextNumberBeyondALimitInAllItsDigits) {
       sentence([](auto& s) { s.density = -1; }),
       "a soft body's density is -1; it must be a number above 0, in kg/m^3 (of a two-dimensional body in "
       "kg/m^2)");
+  constexpr float infinite = std::numeric_limits<float>::infinity();
+  EXPECT_EQ(sentence([=](auto& s) { s.friction = infinite; }),
+            "a soft body's friction is inf; it must be 0 or above, and finite");
+  EXPECT_EQ(sentence([=](auto& s) { s.cell_size = infinite; }),
+            "a soft body's cell_size is inf; it must be a length in metres above 0, and finite");
+  EXPECT_EQ(sentence([=](auto& s) { s.alpha = infinite; }),
+            "a soft body's alpha is inf; it must be from 0 to 1");
 }
 
 TEST(SoftBodySettings, FrequencyAndDampingTimeTakeThePlaceOfAlphaAndDamping) {

@@ -36,7 +36,14 @@ TEST_F(LoadKernel, FindsEveryKernelByName) {
     if (file.checked_elf.empty()) continue;
     EXPECT_TRUE(load_kernel(file.name, true).checked) << file.name;
   }
-  EXPECT_THROW(load_kernel("no_such"), std::runtime_error);
+  try {
+    load_kernel("no_such");
+    ADD_FAILURE() << "a kernel that there is not";
+  } catch (const std::runtime_error& error) {
+    EXPECT_EQ(std::string(error.what()).find("softcell has no kernel no_such; there are: job_loop, attach, "),
+              0u)
+        << error.what();
+  }
   EXPECT_THROW(load_kernel("job_loop", true), std::runtime_error);
 }
 

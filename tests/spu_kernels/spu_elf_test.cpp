@@ -29,6 +29,7 @@ KernelImage spu_kernel(const std::string& name) {
 
 TEST(SpuElf, EveryKernelDeclaresTheSameOnBothMachinesAndFits) {
   for (const spu_kernels::ImageFile& file : spu_kernels::image_files()) {
+    if (file.spu_elf.empty()) continue;  // kernels.py check tells of it
     SCOPED_TRACE(file.name);
     const KernelImage host = ls_sim::load_image(file.name, file.elf),
                       spu = spu_kernel(std::string(file.name));

@@ -760,6 +760,9 @@ TEST(Command, SavesASceneThatBeginsWithWhatThereIs) {
   EXPECT_NE(
       refusal("--frames 1 --save-scene s.state", 2).find("--save-scene s.state: give a file name that ends"),
       std::string::npos);
+  EXPECT_NE(refusal("--frames 1 --save-scene $(printf 'x\\377.toml')", 2)
+                .find("--save-scene x\\xff.toml: give a file name in UTF-8"),
+            std::string::npos);
   EXPECT_NE(refusal("--frames 1 --save-scene -", 2).find("cannot write to standard output"),
             std::string::npos);
   EXPECT_NE(refusal("--frames 1 --scene s.toml --save-scene s.toml", 2).find("and --save-scene are one file"),
@@ -770,6 +773,22 @@ TEST(Command, SavesASceneThatBeginsWithWhatThereIs) {
   EXPECT_NE(refusal("--ui-scale 2", 2).find("--ui-scale is for text and menus in a window"),
             std::string::npos);
   EXPECT_NE(refusal("--ui-scale 9", 2).find("--ui-scale 9: give a number from 0.5 to 4"), std::string::npos);
+}
+
+TEST(Command, KeepsStatisticsAndTraceOfARunWhoseSceneCannotBeSaved) {
+  const ScratchFolder folder;
+  write_file(folder / "br.toml",
+             "dimension = 2\n[framework]\n[[soft_body]]\nname = 'b'\ncell_size = 0.3\n"
+             "shape = { kind = 'ring' }\nposition = [0, 2]\nfracture = { stretch = 0.05 }\n");
+  const CommandResult run = run_shell("cd " + folder.path().string() +
+                                      " && timeout 60 " SOFTCELL_COMMAND
+                                      " demo 2d --headless --size 32x32 --quiet --scene br.toml --frames 120"
+                                      " --save-scene s.toml --json j.json --trace t.json --record r.rec");
+  EXPECT_EQ(run.status, 1);
+  EXPECT_NE(run.output.find("the scene br cannot be saved or changed: 'b' has broken"), std::string::npos)
+      << run.output;
+  EXPECT_EQ(files_in(folder.path()), (std::set<std::string>{"br.toml", "j.json", "t.json", "r.rec"}));
+  EXPECT_EQ(read_json(folder / "j.json").at("frames"), 120);
 }
 
 // The folder above the one that a link stands for is not the folder that the link is in.
@@ -995,7 +1014,7 @@ TEST(Command, SaysWhenWhatItPrintsIsLost) {
   for (const char* verb : {"scenes", "man", "spu budget", "bench --list", "completion bash", "--help"}) {
     const CommandResult run = run_shell(std::string(SOFTCELL_COMMAND) + " " + verb + " 2>&1 >/dev/full");
     EXPECT_EQ(run.status, 1) << verb;
-    EXPECT_NE(run.output.find("No space left"), std::string::npos) << verb << ": " << run.output;
+    EXPECT_EQ(run.output, "softcell: cannot write standard output: No space left on device\n") << verb;
   }
 }
 
@@ -1150,6 +1169,9 @@ INSTANTIATE_TEST_SUITE_P(
     BadInput, CommandRefuses,
     testing::Values(
         Refusal{SC_DEMO "--scene nowhere", 1, "there are: arena, "},
+        Refusal{SC_DEMO "--scene jelies", 1, "unknown scene 'jelies'; did you mean 'jellies'?"},
+        Refusal{SC_DEMO "--scene %s/file", 1, "/file' is no scene: a scene file ends in .toml or .lua"},
+        Refusal{SC_DEMO "--scene x.txt", 1, "'x.txt' is no scene: a scene file ends in .toml or .lua"},
         Refusal{"bench --compare %s/file", 1, "file holds no figures of `softcell bench --json`"},
         Refusal{"bench --compare %s/none", 1, "none"},
         Refusal{"spu budget nowhere.spu.elf", 1,

@@ -150,6 +150,16 @@ says(0 "${rules}" sh -c "${gcc_there} -MD -MF z.d main.c 'a b.c' -o p.elf && cat
 says(0 "^a\\\\ b.o: a\\\\ b.c n.h\n$" sh -c "${gcc_there} -MMD -c 'a b.c' && cat 'a b.d'")
 says(0 "^mine: main.c n.h\n" sh -c "${gcc_there} -MMD -MT mine main.c 'a b.c' && cat main.d")
 
+# Another make of compiler than softcell was built with.
+set(other clang++)
+set(refusal "which is Clang; this softcell was built with GCC: name a g[+][+]")
+if(COMPILER STREQUAL Clang)
+  set(other g++)
+  set(refusal "which is no Clang; this softcell was built with Clang: name a clang[+][+]")
+endif()
+says(1 "^softcell-spu-gcc: SOFTCELL_CXX is [a-z+]*, ${refusal}\n$" ${CMAKE_COMMAND} -E env SOFTCELL_CXX=${other} ${gcc} ${lab}/value.c -c
+  -o ${lab}/value.o)
+
 # Folders that are not there.
 says(0 "^$" sh -c "cd ${lab} && TMPDIR=${lab}/nowhere ${gcc} value.c main_of_archive.c -o value")
 says(1 "^softcell-spu-gcc: cannot write ${lab}/nowhere/value: No such file or directory\n$" ${gcc} ${lab}/value.c ${lab}/main_of_archive.c

@@ -9,6 +9,7 @@
 #include <new>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <system_error>
 
 #include "all_verbs.h"
@@ -64,7 +65,17 @@ class CommandLine {
 /// Printed text may still be in the stream's buffer, and a full disk shows only when it is flushed.
 void finish_printing() {
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return;
-  throw std::runtime_error(std::string("cannot write to standard output: ") + std::strerror(errno));
+  throw std::runtime_error(std::string("cannot write standard output: ") + std::strerror(errno));
+}
+
+std::string sentence_of(const std::system_error& error) {
+  // What a thread that cannot be started throws says nothing of threads.
+  if (error.code() == std::errc::resource_unavailable_try_again)
+    return "no more threads can be started: there is not enough memory, or too many run";
+  // fmt::print() names no file.
+  if (std::string_view(error.what()).starts_with("cannot write to file"))
+    return "cannot write standard output: " + error.code().message();
+  return base::one_line(error.what());
 }
 
 }  // namespace
@@ -88,11 +99,7 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "softcell: there is not enough memory\n");
     return 1;
   } catch (const std::system_error& error) {
-    // What a thread that cannot be started throws says nothing of threads.
-    const bool is_thread = error.code() == std::errc::resource_unavailable_try_again;
-    std::fprintf(stderr, "softcell: %s\n",
-                 is_thread ? "no more threads can be started: there is not enough memory, or too many run"
-                           : base::one_line(error.what()).c_str());
+    std::fprintf(stderr, "softcell: %s\n", sentence_of(error).c_str());
     return 1;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "softcell: %s\n", base::one_line(error.what()).c_str());

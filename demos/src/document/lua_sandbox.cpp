@@ -5,6 +5,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -52,6 +53,14 @@ double seconds(clockid_t clock) {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
+/// The chunk without what luaL_loadfile() passes over as well: a byte order mark, and a first line that begins with #, but for its end.
+std::string_view without_preamble(std::string_view chunk) {
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+  if (chunk.starts_with(kByteOrderMark)) chunk.remove_prefix(kByteOrderMark.size());
+  if (chunk.starts_with('#')) chunk.remove_prefix(std::min(chunk.find('\n'), chunk.size()));
+  return chunk;
+}
+
 /// The other globals of Lua 5.4, of which none is opened.
 constexpr const char* kOtherGlobals[] = {"coroutine", "debug", "io", "os", "package", "require", "utf8"};
 
@@ -68,6 +77,7 @@ class Sandbox {
     open_libraries();
     lua_sethook(state_, on_hook, LUA_MASKCOUNT | LUA_MASKLINE, kInstructionsBetweenChecks);
     // "t": text only. Bytecode could do anything.
+    chunk = without_preamble(chunk);
     int status = luaL_loadbufferx(state_, chunk.data(), chunk.size(), kChunkName, "t");
     if (status == LUA_OK) status = lua_pcall(state_, 0, 1, 0);
     if (status != LUA_OK) fail_with_error(status);

@@ -14,6 +14,20 @@
 
 namespace softcell::demos {
 
+/// Refuses a field that has no meaning for this kind of attachment. @throws SceneError
+inline void refuse_field_of_others(const FieldReader& fields, ppu::AttachmentKind kind) {
+  const bool rope = kind == ppu::AttachmentKind::kRope, hinge = kind == ppu::AttachmentKind::kHinge;
+  const auto refuse_unless = [&](bool allowed, const char* name, std::string_view owners) {
+    if (allowed || !fields.has(name)) return;
+    throw SceneError(fields.place(name),
+                     fmt::format("{} is a {} and has the field '{}'; only {} have it", fields.what(),
+                                 kAttachmentKinds.at(static_cast<std::size_t>(kind)), name, owners));
+  };
+  refuse_unless(hinge, "axis", "hinges");
+  refuse_unless(hinge || rope, "point", "hinges and ropes");
+  for (const char* const name : {"thickness", "colour"}) refuse_unless(rope, name, "ropes");
+}
+
 /// Reads all fields except those that name the rigid body, which the caller has read.
 /// @throws SceneError
 template <int kDimension, class SceneOf>
@@ -44,6 +58,7 @@ void read_attachment(FieldReader& fields, const SceneOf& scene, AttachmentPlacem
       .colour("colour", attachment.colour)
       .finish();
   settings.kind = static_cast<ppu::AttachmentKind>(kind);
+  refuse_field_of_others(fields, settings.kind);
   if (fields.has("point")) settings.point = point;
   if (fields.has("touch")) settings.touch = touch;
   std::vector<std::string_view> given;

@@ -1,13 +1,17 @@
 #include "scene_source.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cctype>
 #include <stdexcept>
+#include <string_view>
+#include <vector>
 
 #include "scene_library.h"
 #include "softcell/base/assert.h"
+#include "softcell/base/nearest_name.h"
 #include "softcell/base/read_file.h"
 #include "state_file.h"
 
@@ -39,6 +43,20 @@ bool is_printable(const std::string& name) {
                       [](char c) { return std::iscntrl(static_cast<unsigned char>(c)) != 0; });
 }
 
+/// @param name  neither of a built-in scene nor of a scene file
+[[noreturn]] void refuse(const fs::path& name) {
+  if (name.has_extension() || name.has_parent_path())
+    throw std::runtime_error(
+        fmt::format("'{}' is no scene: a scene file ends in .toml or .lua", name.string()));
+  std::vector<std::string_view> known;
+  for (const SceneListing& scene : list_scenes()) known.push_back(scene.name);
+  if (const std::string_view meant = base::nearest_name(name.native(), known); !meant.empty())
+    throw std::runtime_error(fmt::format("unknown scene '{}'; did you mean '{}'?", name.string(), meant));
+  throw std::runtime_error(
+      fmt::format("unknown scene '{}'; there are: {}; or give a scene file, which ends in .toml or .lua",
+                  name.string(), fmt::join(known, ", ")));
+}
+
 }  // namespace
 
 SceneSource SceneSource::find(std::string_view name_or_file) {
@@ -51,14 +69,8 @@ SceneSource SceneSource::find(std::string_view name_or_file) {
       return source;
     }
   }
-  if (!is_scene_file(name_or_file)) {
-    std::string known;
-    for (const SceneListing& scene : list_scenes()) known += (known.empty() ? "" : ", ") + scene.name;
-    throw std::runtime_error(
-        fmt::format("unknown scene '{}'; there are: {}; or give a scene file, which ends in .toml or .lua",
-                    name_or_file, known));
-  }
   const fs::path path{name_or_file};
+  if (!is_scene_file(name_or_file)) refuse(path);
   source.main_ = read_text(path);
   source.folder_ = fs::weakly_canonical(path).parent_path();
   source.files_.push_back(path);

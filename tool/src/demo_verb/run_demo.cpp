@@ -5,10 +5,13 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <exception>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
+#include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "demo/pictures.h"
@@ -150,12 +153,24 @@ void check_pictures(const DemoOptions& options) {
   }
 }
 
+bool is_utf8(std::string_view text) {
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t length = base::utf8_length(text, at);
+    if (length == 0) return false;
+    at += length;
+  }
+  return true;
+}
+
 /// Checks that no output replaces another one or a file that the demo reads.
 void check_files(const DemoOptions& options) {
   refuse_standard_output({"--save-scene", options.save_scene});
   if (options.save_scene && options.save_scene->extension() != ".toml")
     throw UsageError(
         fmt::format("--save-scene {}: give a file name that ends in .toml", options.save_scene->string()));
+  if (options.save_scene && !is_utf8(options.save_scene->filename().string()))
+    throw UsageError(fmt::format("--save-scene {}: give a file name in UTF-8; the scene names its state file",
+                                 options.save_scene->string()));
   std::vector<NamedFile> written = written_files(options);
   check_distinct(written);
   for (const NamedFile& file : {NamedFile{"--record", options.record}, {"--out", options.out}})
@@ -265,8 +280,15 @@ int run_demo(const DemoOptions& options, std::string_view verb, const LoadScenes
     fmt::print(stderr, "softcell: the scene {} has no bodies\n", run.demo->scene_name());
   const DemoFigures figures = demo_figures(options, *run.demo, run.record, timing ? &*timing : nullptr);
   const std::vector<ls_sim::Finding> found = findings.list();
-  print_findings(found);  // before a file that cannot be written may end the run
-  if (options.save_scene) run.demo->save_scene(options.save_scene);
+  print_findings(found);       // before a file that cannot be written may end the run
+  std::exception_ptr refused;  // a scene that cannot be saved takes nothing else of the run with it
+  if (options.save_scene) {
+    try {
+      run.demo->save_scene(options.save_scene);
+    } catch (const std::runtime_error&) {
+      refused = std::current_exception();
+    }
+  }
   if (trace) trace->write(*trace_file);
   if (json_file != nullptr) {
     auto document = to_json(figures);
@@ -275,6 +297,7 @@ int run_demo(const DemoOptions& options, std::string_view verb, const LoadScenes
   }
   files.commit();
   if (!options.quiet) print_summary(figures, options);
+  if (refused) std::rethrow_exception(refused);
   run.demo->check_replay();
   return found.empty() ? 0 : kExitFindings;
 }

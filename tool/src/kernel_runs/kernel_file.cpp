@@ -80,6 +80,12 @@ std::vector<std::string> built_in_kernels(bool checked) {
   return names;
 }
 
+bool is_built_for_spu(const std::string& built_in_kernel) {
+  return std::ranges::any_of(spu_kernels::image_files(), [&](const spu_kernels::ImageFile& file) {
+    return file.name == built_in_kernel && !file.spu_elf.empty();
+  });
+}
+
 std::optional<std::filesystem::path> find_kernel_file(const std::string& image, bool checked) {
   std::error_code ignored;
   if (!std::filesystem::exists(image, ignored)) return std::nullopt;

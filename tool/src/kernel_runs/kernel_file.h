@@ -23,6 +23,9 @@ inline std::uint32_t stack_for_checks(const ls_sim::KernelImage& image) {
 /// @param checked  only kernels that have a checked image
 std::vector<std::string> built_in_kernels(bool checked);
 
+/// A kernel of this project has an executable for the SPU: a new one may have none.
+bool is_built_for_spu(const std::string& built_in_kernel);
+
 using spu_kernels::load_kernel;
 
 /// The file that load_kernel_file() reads; none for a kernel of this project.

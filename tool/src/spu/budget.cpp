@@ -34,8 +34,10 @@ struct BudgetRow {
 BudgetRow budget_row(const std::string& kernel, bool checked, std::span<const KernelSample> samples) {
   BudgetRow row{{load_kernel_file(kernel, checked), {}}, {}};
   if (find_kernel_file(kernel, checked) || row.build.kernel.checked) return row;
+  row.build.needs = measure(row.build.kernel, samples);
+  if (!is_built_for_spu(kernel)) return row;
   row.on_spu = Build{load_kernel_file(kernel, false, ls_sim::Machine::kSpu), {}};
-  for (Build* build : {&row.build, &*row.on_spu}) build->needs = measure(build->kernel, samples);
+  row.on_spu->needs = measure(row.on_spu->kernel, samples);
   return row;
 }
 

@@ -19,9 +19,27 @@ std::filesystem::path find(const std::filesystem::path& folder, const char* buil
                            (folder / installed).lexically_normal().string());
 }
 
+#ifdef __clang__
+constexpr bool kByClang = true;
+#else
+constexpr bool kByClang = false;
+#endif
+
+/// The flags of kernels are those of the compiler that has built softcell.
+void require_same_make(const std::string& compiler) {
+  const bool is_clang = output_of({compiler, "--version"}).find("clang") != std::string::npos;
+  if (is_clang == kByClang) return;
+  throw std::runtime_error("SOFTCELL_CXX is " + compiler +
+                           (kByClang
+                                ? ", which is no Clang; this softcell was built with Clang: name a clang++"
+                                : ", which is Clang; this softcell was built with GCC: name a g++"));
+}
+
 std::string find_compiler() {
-  if (const char* const wanted = std::getenv("SOFTCELL_CXX"); wanted != nullptr && *wanted != '\0')
+  if (const char* const wanted = std::getenv("SOFTCELL_CXX"); wanted != nullptr && *wanted != '\0') {
+    require_same_make(wanted);
     return wanted;
+  }
   return std::filesystem::exists(settings::kCompiler) ? settings::kCompiler : settings::kCompilerName;
 }
 

@@ -12,7 +12,8 @@
 namespace softcell::dma {
 
 /// Copies bytes to a local store. If both addresses are multiples of 16, each quadword is written in one access. If the ranges overlap, the
-/// result is unspecified. Any thread. A processor must be serialised before it executes the copied bytes: ls_sim/src/native/serialise.h.
+/// result is unspecified. Any thread. A processor must be serialised before it executes the copied bytes (in softcell's sources,
+/// ls_sim/src/native/serialise.h).
 void copy_to_local_store(std::byte* to, const std::byte* from, std::size_t bytes);
 
 /// Sets bytes of a local store to `value`, in the same way.

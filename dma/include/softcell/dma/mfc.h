@@ -70,7 +70,7 @@ class Mfc {
   void begin_job(std::uint64_t job_id);
 
   /// Queues one DMA command (a write to MFC_Cmd). Its bytes may move at any time until its tag is waited for.
-  /// @param command  lsa, ea and size in bytes, as check_command() in mfc_rules.h requires for its kind.
+  /// @param command  lsa, ea and size in bytes, as the rules require for its kind (docs/reference/rules.md).
   /// @return  nothing, or the rule that the command breaks; then it is not queued.
   /// @note    A full queue is no error: time passes until a slot is free, and the stall is counted. If all
   ///          queued commands wait for a list that has stalled, the fault is list-stalled-for-ever.

@@ -37,7 +37,7 @@ enum class CommandKind : std::uint8_t {
   kCacheHint,   ///< sdcrt, sdcrtst, sdcrz, sdcrst, sdcrf: a range of main storage, no local store
 };
 
-/// A command as issued; it is not checked here, see check_command() in mfc_rules.h.
+/// A command as issued. It is checked when the MFC takes it (Mfc, mfc.h).
 struct MfcCommand {
   /// MFC_Cmd: transfer class << 24 | replacement class << 16 | opcode. The classes are cache hints.
   std::uint32_t word = 0;

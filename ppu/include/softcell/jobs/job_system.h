@@ -11,7 +11,7 @@
 //   chain.kick();                                                    // the PPU is free
 //   chain.wait();                                                    // ... until it needs the result
 //
-// spu_kernels/job_chain.h describes the data in memory, spu_kernels/job_loop.cpp what the SPEs do with it.
+// In softcell's sources, spu_kernels/job_chain.h describes the data in memory, spu_kernels/job_loop.cpp what the SPEs do with it.
 
 #include <cstddef>
 #include <memory>

@@ -10,7 +10,7 @@ namespace softcell::ppu {
 /// A sphere of `radius` metres: six faces of a cube, each with `subdivisions` (1..512) squares per side, pushed onto the sphere.
 TriangleMesh make_sphere(float radius, int subdivisions);
 
-/// A torus about the y axis; `major` is the radius of the ring, `minor` that of the tube.
+/// A torus about the y axis; `major` is the radius of the ring, `minor` that of the tube, which is less.
 /// Both counts 3..2048.
 TriangleMesh make_torus(float major, float minor, int ring_segments, int tube_segments);
 

@@ -40,7 +40,7 @@ TriangleMesh rest_mesh(const SoftBody<3>& body);
 /// A deformed mesh with memory of its own. Used by one thread at a time.
 class SkinnedMesh {
  public:
-  /// The original mesh, around the model's own origin. A model without a mesh has no vertices.
+  /// The original mesh, around the model's own origin. A model without a mesh has no vertices. @pre the model is not null
   explicit SkinnedMesh(std::shared_ptr<const SoftBodyModel<3>> model);
 
   /// Computes positions and normals of the body as it is now. Allocates nothing.

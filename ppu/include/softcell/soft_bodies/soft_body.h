@@ -51,7 +51,7 @@ class SoftBody {
   using Rotation = typename Turning<kDimension>::Rotation;
   using AxialVector = typename Turning<kDimension>::AxialVector;
 
-  /// A body at rest, undeformed, the model's own origin at `position` (metres).
+  /// A body at rest, undeformed, the model's own origin at `position` (metres). @pre the model is not null
   explicit SoftBody(std::shared_ptr<const SoftBodyModel<kDimension>> model,
                     const Vector& position = Vector::Zero());
   /// Copies the whole state of the other, with the rotations of its regions.
@@ -137,10 +137,11 @@ class SoftBody {
   /// @throws std::runtime_error  as validate(); the model has too many particles for plasticity; nothing has changed then
   /// @pre cell_size, half_width, density and contacts are the model's
   void set_material(const SoftBodySettings& settings);
-  void translate(const Vector& by);  ///< metres; finite
-  /// Puts the body back into the model's shape, at rest, with the model's own origin at `position` (metres).
+  void translate(const Vector& by);  ///< metres @pre it is finite
+  /// Puts the body back into the model's shape, at rest, with the model's own origin at `position` (metres). @pre it is finite
   void reset(const Vector& position);
   /// Teleports the body: rotates it about its centre of mass, then moves it by `translation` (metres). Velocities rotate with the body.
+  /// @pre the translation is finite
   void move_without_force(const Rotation& rotation, const Vector& translation);
   /// Puts the body back into the model's shape, also a plastic body. Keeps its centre, mean orientation and both momenta.
   void reset_deformation();
@@ -148,9 +149,11 @@ class SoftBody {
   /// @throws std::runtime_error  a position is not finite; there are more or fewer positions than particles; a cell is flat, turned inside
   /// out (as all are in a mirrored shape) or has less than half of its volume in the model; the model has too many particles for plasticity
   void set_rest_positions(std::span<const Vector> rest);
-  void add_velocity(const Vector& dv);                                 ///< m/s, to every particle
-  void add_particle_velocity(std::size_t particle, const Vector& dv);  ///< m/s
-  /// Adds a rotation about the centre of mass, in rad/s, to every particle's velocity.
+  /// In m/s, to every particle. @pre it is finite
+  void add_velocity(const Vector& dv);
+  /// In m/s. @pre particle < model().particles()
+  void add_particle_velocity(std::size_t particle, const Vector& dv);
+  /// Adds a rotation about the centre of mass, in rad/s, to every particle's velocity. @pre it is finite
   void add_angular_velocity(const AxialVector& dw);
 
   // The state of the body now. These functions change nothing.
@@ -181,6 +184,7 @@ class SoftBody {
 
  private:
   void set_position(std::size_t particle, const Vector& position);
+  void turn_velocities(const AxialVector& dw);
   void place_at_rest(const Vector& position);
   void forget_rotations();
   void end_pull();

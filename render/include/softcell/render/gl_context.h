@@ -1,5 +1,5 @@
 #pragma once
-// The OpenGL context that a renderer draws with. Backends: offscreen_context.h, window.h.
+// The OpenGL context that a renderer draws with. Backends: offscreen_context.h, and in softcell's sources window.h.
 
 #include <string>
 

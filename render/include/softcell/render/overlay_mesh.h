@@ -1,5 +1,5 @@
 #pragma once
-// The overlay of a picture (text, tables, plots) as triangles: overlay.h makes them, the renderer draws them.
+// The overlay of a picture (text, tables, plots) as triangles. The renderer draws them; in softcell's sources, overlay.h makes them.
 
 #include <cstdint>
 #include <span>

@@ -12,7 +12,8 @@ struct ImageFile {
   std::string_view name;
   std::span<const std::byte> elf;          ///< for ls_sim::load_image()
   std::span<const std::byte> checked_elf;  ///< its checked image; empty for one that would not fit
-  std::span<const std::byte> spu_elf;      ///< the executable for the SPU, for ls_sim::load_spu_program()
+  /// The executable for the SPU, for ls_sim::load_spu_program(); empty for a new kernel that no compiler for the SPU has built.
+  std::span<const std::byte> spu_elf;
 };
 
 /// All of them, by name.
