@@ -118,6 +118,7 @@ void ContactModel::place_touch_points() {
   std::vector<std::uint32_t> next(first_of_cell.begin(), first_of_cell.end() - 1);
   for (const SurfacePointAtRest& point : surface.points())
     touch_points[next[point.cell]++] = {anchor_in_cell(lattice(), point.cell, point.xi), point.xi, 0};
+  first_particle_of_cell = next;
   for (const TouchingParticle& touching : surface.particles()) {
     const auto& [cell, xi] = homes[touching.particle];
     touch_points[next[cell]++] = {anchor_in_cell(lattice(), cell, xi), xi,

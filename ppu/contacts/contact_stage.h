@@ -227,8 +227,8 @@ class ContactStage {
   std::vector<bool> is_crushed_;  // of each body: it has crushed cells
   std::vector<Crushed> crushed_;  // the first crushed_count_ are used
   std::size_t crushed_count_ = 0;
-  DisjointSets islands_;       // for find_free_bodies()
-  std::vector<bool> is_free_;  // likewise, of each body
+  DisjointSets islands_;             // for find_free_bodies()
+  std::vector<bool> is_free_;        // likewise, of each body
   std::vector<float> moved_by_all_;  // of each pressing particle, by an impulse of 1 at each point
   std::vector<Press> presses_;
   Supports supports_;

@@ -28,6 +28,8 @@ constexpr float kOpposite = -0.5f, kAlike = 0.5f;
 constexpr float kBeside = 0.1f;
 // Sine of the angle between a contact's normal and that of the body's surface: below this they are as good as one.
 constexpr float kFaceOn = 0.1f;
+// In cells: a shape around whose middle there is as much of it is thicker than all that a body may have beyond its drawn surface.
+constexpr float kThick = 2;
 
 /// The place where a point's motion comes near an obstacle.
 struct Arrival {
@@ -144,12 +146,20 @@ class ObstacleContacts {
     if (may_have_others_beside())
       cells_.beside.begin(obstacles_, near_obstacles_, obstacle_, body_.spacing());
     const Passage near = passage(near_);
+    // Nothing is beyond a thick shape: a point that has a contact is deep in it.
+    const bool is_thick = separation(obstacle_, Vector3f::Zero()).distance < -kThick * body_.spacing();
     cells_.boxes().for_each_meeting(near_, [&](std::uint32_t cell) {
-      for_each_outer_point(cell, [&](const TouchPoint& point, const Vector3f& from, const Vector3f& to) {
+      std::optional<InnerPlace> inner;
+      for_each_outer_point(cell, [&](const TouchPoint& point, const Vector3f& from) {
+        const Vector3f to = point.anchor.of(body_.ends);
         const PointWay way = way_of(from, to);
         const float spacing = body_.spacing();
-        const Vector3f inside = obstacle_.to_own(inner_place(*body_.model, cell, body_.positions));
-        const auto face = face_before_outer_point(way, inside, point.allowance);
+        if (is_thick && separation(obstacle_, way.to).distance > kNear * spacing - point.allowance) return;
+        if (!inner) inner = inner_place_of(cell);
+        if (!overlap(near_, Bounds<3>{from.cwiseMin(inner->in_world), from.cwiseMax(inner->in_world)}))
+          return;
+        if (inner->clear > (from - inner->in_world).norm()) return;
+        const auto face = face_before_outer_point(way, *inner, point.allowance);
         if (face && face->end <= kNear * spacing) add(point.anchor, to, *face, face->end - point.allowance);
       });
       for_each_point_in(near, cell, [&](const TouchPoint& point, const Vector3f& from, const Vector3f& to) {
@@ -212,13 +222,17 @@ class ObstacleContacts {
     }
   }
 
-  /// Calls work(point, from, to) for those of a cell's points that are outside of the drawn surface.
+  /// Calls work(point, from) for those of a cell's points that are outside of the drawn surface.
   template <typename Work>
   void for_each_outer_point(std::uint32_t cell, const Work& work) const {
     const ContactModel& model = *body_.model;
-    for (std::uint32_t i = model.first_of_cell[cell]; i < model.first_of_cell[cell + 1]; ++i) {
+    for (std::uint32_t i = model.first_particle_of_cell[cell]; i < model.first_of_cell[cell + 1]; ++i) {
       const TouchPoint& point = model.touch_points[i];
-      if (point.allowance > 0) work(point, point.anchor.of(body_.positions), point.anchor.of(body_.ends));
+      if (point.allowance <= 0) continue;
+      // It is a particle, a corner of its cell.
+      const unsigned corner =
+          (point.xi.x() > 0.5f ? 1u : 0) | (point.xi.y() > 0.5f ? 2u : 0) | (point.xi.z() > 0.5f ? 4u : 0);
+      work(point, body_.positions[point.anchor.particle[corner]]);
     }
   }
 
@@ -417,7 +431,11 @@ class ObstacleContacts {
       const Bounds<3> around = cells_.boxes().at(cell);
       if (!overlap(near_, Bounds<3>{around.low.cwiseMin(inner), around.high.cwiseMax(inner)})) return;
       const Vector3f inside = origin_ ? *origin_ : obstacle_.to_own(inner);
-      for_each_outer_point(cell, [&](const TouchPoint& point, const Vector3f& from, const Vector3f& to) {
+      for_each_outer_point(cell, [&](const TouchPoint& point, const Vector3f& from) {
+        const Vector3f to = point.anchor.of(body_.ends);
+        if (!overlap(deep.box,
+                     Bounds<3>{from.cwiseMin(to).cwiseMin(inner), from.cwiseMax(to).cwiseMax(inner)}))
+          return;
         const PointWay way = way_of(from, to);
         add_between(triangles, {&point, 0, way.from, way.to, inside});
       });
@@ -595,14 +613,30 @@ class ObstacleContacts {
     return obstacle_.rotation.transpose() * way.stableNormalized();
   }
 
+  /// A place well inside of the body, near a cell.
+  struct InnerPlace {
+    Vector3f in_world, place;  ///< before the substep; in the obstacle's frame
+    float clear;               ///< metres from the obstacle
+  };
+  InnerPlace inner_place_of(std::uint32_t cell) const {
+    const Vector3f in_world = inner_place(*body_.model, cell, body_.positions);
+    const Vector3f place = obstacle_.to_own(in_world);
+    return {in_world, place, separation(obstacle_, place).distance};
+  }
+
   /// The contact of a point outside of the drawn surface, which may be deep in the obstacle or on its other side: the line to it from the
   /// inside of its body tells the face.
-  /// @param inside  a place of the point's body, before the substep, in the obstacle's frame
-  /// @return  none: the line does not enter, `inside` does not tell, or another shape has the contact
-  std::optional<ObstacleHit> face_before_outer_point(const PointWay& way, const Vector3f& inside,
+  /// @param inner  of the point's cell
+  /// @return  none: the line does not enter, the inner place does not tell, or another shape has the contact
+  std::optional<ObstacleHit> face_before_outer_point(const PointWay& way, const InnerPlace& inner,
                                                      float allowance) {
     const float spacing = body_.spacing();
+    const Vector3f& inside = inner.place;
     const PointWay line{inside, way.from};
+    // Most lines pass beside: balls around both ends, which do not meet the obstacle, cover them.
+    const float clear_at_point = separation(obstacle_, line.to).distance;
+    if (inner.clear > 0 && clear_at_point > 0 && inner.clear + clear_at_point > (line.to - line.from).norm())
+      return {};
     const auto arrival = arrive(obstacle_, line.from, line.to - line.from, 0, spacing);
     // Where a body is pressed flat, its inside may be a little in the obstacle, too.
     if (!arrival || arrival->there.distance < -kPressedThrough * spacing) return {};
