@@ -571,8 +571,8 @@ void ContactStage::find_free_bodies() {
   for (std::uint32_t i = 0; i < bodies_.size(); ++i) is_free_[i] = is_free_[islands_.find(i)];
 }
 
-/// Sums up pairs of soft bodies, and crushed ones that are free. Rigid and sleeping bodies are not counted here. A push moves particles together with their
-/// momenta.
+/// Sums up pairs of soft bodies, and crushed ones that are free. Rigid and sleeping bodies are not counted here. A push moves particles
+/// together with their momenta.
 void ContactStage::take_back_lost_spin(float step) {
   using Eigen::Vector3d;
   lost_spin_.begin(bodies_.size());

@@ -50,8 +50,8 @@ struct AttachmentSettings {
   using Vector = Eigen::Vector<float, kDimension>;
 
   AttachmentKind kind = AttachmentKind::kWeld;
-  /// Metres, of a hinge or rope. The place of a hinge; without a value, the middle of the patch. The other end of a rope that goes to the world or to a rigid
-  /// body; without a value, the rigid body's centre.
+  /// Metres, of a hinge or rope. The place of a hinge; without a value, the middle of the patch. The other end of a rope that goes to the
+  /// world or to a rigid body; without a value, the rigid body's centre.
   std::optional<Vector> point = {};
   Vector axis = Vector::UnitX();  ///< of a hinge in three dimensions; its length may be any but 0
   /// Metres, of a rope; without a value, the present distance of its ends. A shorter rope pulls its ends together: each comes nearer by up
