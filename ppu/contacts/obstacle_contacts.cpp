@@ -147,21 +147,10 @@ class ObstacleContacts {
       cells_.beside.begin(obstacles_, near_obstacles_, obstacle_, body_.spacing());
     const Passage near = passage(near_);
     // Nothing is beyond a thick shape: a point that has a contact is deep in it.
-    const bool is_thick = separation(obstacle_, Vector3f::Zero()).distance < -kThick * body_.spacing();
+    const bool is_thick = obstacle_.kind == ObstacleKind::kPlane ||
+                          separation(obstacle_, Vector3f::Zero()).distance < -kThick * body_.spacing();
     cells_.boxes().for_each_meeting(near_, [&](std::uint32_t cell) {
-      std::optional<InnerPlace> inner;
-      for_each_outer_point(cell, [&](const TouchPoint& point, const Vector3f& from) {
-        const Vector3f to = point.anchor.of(body_.ends);
-        const PointWay way = way_of(from, to);
-        const float spacing = body_.spacing();
-        if (is_thick && separation(obstacle_, way.to).distance > kNear * spacing - point.allowance) return;
-        if (!inner) inner = inner_place_of(cell);
-        if (!overlap(near_, Bounds<3>{from.cwiseMin(inner->in_world), from.cwiseMax(inner->in_world)}))
-          return;
-        if (inner->clear > (from - inner->in_world).norm()) return;
-        const auto face = face_before_outer_point(way, *inner, point.allowance);
-        if (face && face->end <= kNear * spacing) add(point.anchor, to, *face, face->end - point.allowance);
-      });
+      try_points_outside(cell, is_thick);
       for_each_point_in(near, cell, [&](const TouchPoint& point, const Vector3f& from, const Vector3f& to) {
         if (point.allowance > 0) return;
         const PointWay way = way_of(from, to);
@@ -224,7 +213,7 @@ class ObstacleContacts {
 
   /// Calls work(point, from) for those of a cell's points that are outside of the drawn surface.
   template <typename Work>
-  void for_each_outer_point(std::uint32_t cell, const Work& work) const {
+  void for_each_point_outside(std::uint32_t cell, const Work& work) const {
     const ContactModel& model = *body_.model;
     for (std::uint32_t i = model.first_particle_of_cell[cell]; i < model.first_of_cell[cell + 1]; ++i) {
       const TouchPoint& point = model.touch_points[i];
@@ -234,6 +223,22 @@ class ObstacleContacts {
           (point.xi.x() > 0.5f ? 1u : 0) | (point.xi.y() > 0.5f ? 2u : 0) | (point.xi.z() > 0.5f ? 4u : 0);
       work(point, body_.positions[point.anchor.particle[corner]]);
     }
+  }
+
+  /// Of a cell. @param is_thick  of the obstacle
+  void try_points_outside(std::uint32_t cell, bool is_thick) {
+    const float near = kNear * body_.spacing();
+    std::optional<InnerPlace> inner;
+    for_each_point_outside(cell, [&](const TouchPoint& point, const Vector3f& from) {
+      const Vector3f to = point.anchor.of(body_.ends);
+      const PointWay way = way_of(from, to);
+      if (is_thick && separation(obstacle_, way.to).distance > near - point.allowance) return;
+      if (!inner) inner = inner_place_of(cell);
+      if (!overlap(near_, Bounds<3>{from.cwiseMin(inner->in_world), from.cwiseMax(inner->in_world)})) return;
+      if (inner->clear > (from - inner->in_world).norm()) return;
+      const auto face = face_before_point_outside(way, *inner, point.allowance);
+      if (face && face->end <= near) add(point.anchor, to, *face, face->end - point.allowance);
+    });
   }
 
   PointWay way_of(const Vector3f& from, const Vector3f& to) const {
@@ -431,7 +436,7 @@ class ObstacleContacts {
       const Bounds<3> around = cells_.boxes().at(cell);
       if (!overlap(near_, Bounds<3>{around.low.cwiseMin(inner), around.high.cwiseMax(inner)})) return;
       const Vector3f inside = origin_ ? *origin_ : obstacle_.to_own(inner);
-      for_each_outer_point(cell, [&](const TouchPoint& point, const Vector3f& from) {
+      for_each_point_outside(cell, [&](const TouchPoint& point, const Vector3f& from) {
         const Vector3f to = point.anchor.of(body_.ends);
         if (!overlap(deep.box,
                      Bounds<3>{from.cwiseMin(to).cwiseMin(inner), from.cwiseMax(to).cwiseMax(inner)}))
@@ -628,8 +633,8 @@ class ObstacleContacts {
   /// inside of its body tells the face.
   /// @param inner  of the point's cell
   /// @return  none: the line does not enter, the inner place does not tell, or another shape has the contact
-  std::optional<ObstacleHit> face_before_outer_point(const PointWay& way, const InnerPlace& inner,
-                                                     float allowance) {
+  std::optional<ObstacleHit> face_before_point_outside(const PointWay& way, const InnerPlace& inner,
+                                                       float allowance) {
     const float spacing = body_.spacing();
     const Vector3f& inside = inner.place;
     const PointWay line{inside, way.from};
