@@ -473,9 +473,11 @@ class ObstacleContacts {
     const Vector3f low = at.inside.cwiseMin(at.from).cwiseMin(at.to),
                    high = at.inside.cwiseMax(at.from).cwiseMax(at.to);
     const float squashed = kPressedThrough * body_.spacing();
+    const float not_deep = at.point->allowance - kNear * body_.spacing() - obstacle_.rounding;
     const Vector3f margin = Vector3f::Constant(squashed);
     for_each_triangle(triangles, {low - margin, high + margin}, [&](std::uint32_t triangle) {
       const ObstacleTriangle one(obstacle_, triangles, triangle);
+      if (std::abs(one.height(at.to)) < not_deep) return;
       if (std::abs(one.height(at.inside)) > squashed && !one.parts(at.from, at.inside) &&
           !one.parts(at.to, at.inside))
         return;
