@@ -34,9 +34,6 @@ AttachmentFrame<2> frame_of(const b2Transform& pose) {
   return frame;
 }
 
-/// Whether Box2D simulates a rigid body's own motion.
-bool is_simulated(const b2Body& rigid) { return rigid.IsEnabled() && rigid.GetType() == b2_dynamicBody; }
-
 }  // namespace
 
 bool Box2dAttachments::may_touch(const b2Body& a, const b2Body& b) const {

@@ -92,6 +92,10 @@ class Box2dBody {
 
 /// Whether a world has a body. It may have been destroyed, so it is not read.
 bool has_body(const b2World& world, const b2Body* body);
+/// Whether Box2D simulates a rigid body's own motion: a disabled body stands still, whatever its velocity.
+inline bool is_simulated(const b2Body& rigid) {
+  return rigid.IsEnabled() && rigid.GetType() == b2_dynamicBody;
+}
 /// 1/kg; 0: it has no fixture with a density, so that impulses do not move it. @pre it is dynamic
 float inverse_mass_of(const b2Body& body);
 /// What forces add to a rigid body's velocities in a step.

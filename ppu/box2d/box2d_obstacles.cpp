@@ -366,7 +366,7 @@ std::uint32_t Box2dObstacles::rigid_of(b2Body& body) {
     rigid.spin = moved->spin;
   }
   rigid.friction = 1;  // each fixture has its own
-  if (body.IsEnabled() && body.GetType() == b2_dynamicBody) {
+  if (is_simulated(body)) {
     rigid.inverse_mass = inverse_mass_of(body);
     rigid.inverse_inertia(2, 2) = inverse_inertia_of(body);
   }

@@ -262,10 +262,13 @@ class ObstacleContacts {
     return triangle.height(near.inside);
   }
 
+  /// 1: the body was in front of the obstacle's triangles; -1: behind them; 0: it is not known.
+  int known_side() const { return body_.sides->known_side_of(rigid_.number, obstacle_.part); }
+
   /// 1: a point that may have been pressed through shows that the body is in front of a triangle; -1: behind it; 0: neither is clear.
-  int vote_of(const KnownTriangles& triangles, const EndCells::PointAtTriangle& near) const {
+  /// @param known  as known_side() says
+  int vote_of(const KnownTriangles& triangles, const EndCells::PointAtTriangle& near, int known) const {
     const float side = side_of(triangles, near);
-    const int known = body_.sides->known_side_of(rigid_.number, obstacle_.part);
     const float clear = (static_cast<float>(known) * side < 0 ? kDoubtfulSide : kClearSide) * body_.spacing();
     return side > clear ? 1 : side < -clear ? -1 : 0;
   }
@@ -274,9 +277,10 @@ class ObstacleContacts {
   /// majority of its triangles tells. If some contradict, each sheet is judged by itself: a wall may face away from a body on the floor.
   void find_fronts(const KnownTriangles& triangles) {
     if (obstacle_.faces_bodies || cells_.near_triangles.empty()) return;
+    const int known = known_side();
     int for_front = 0, for_back = 0;
     for (const EndCells::PointAtTriangle& near : cells_.near_triangles) {
-      const int vote = vote_of(triangles, near);
+      const int vote = vote_of(triangles, near, known);
       for_front += vote > 0 ? 1 : 0;
       for_back += vote < 0 ? 1 : 0;
     }
@@ -297,8 +301,9 @@ class ObstacleContacts {
       const auto known = std::ranges::find(sheets, sheet, &KnownSides::SheetSeen::sheet);
       return known != sheets.end() ? known : sheets.insert(known, {sheet, near.triangle, 0});
     };
+    const int known = known_side();
     for (const EndCells::PointAtTriangle& near : cells_.near_triangles)
-      sheet_of(near)->seen += vote_of(triangles, near);
+      sheet_of(near)->seen += vote_of(triangles, near, known);
     for (KnownSides::SheetSeen& sheet : sheets) {
       const float front = body_.sides->side_of_sheet(rigid_.number, obstacle_.part, obstacle_.triangles,
                                                      cells_.sheets, sheet);
