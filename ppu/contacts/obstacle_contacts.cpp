@@ -150,15 +150,11 @@ class ObstacleContacts {
     const bool is_thick = obstacle_.kind == ObstacleKind::kPlane ||
                           separation(obstacle_, Vector3f::Zero()).distance < -kThick * body_.spacing();
     cells_.boxes().for_each_meeting(near_, [&](std::uint32_t cell) {
-      try_points_outside(cell, is_thick);
-      for_each_point_in(near, cell, [&](const TouchPoint& point, const Vector3f& from, const Vector3f& to) {
-        if (point.allowance > 0) return;
-        const PointWay way = way_of(from, to);
-        const float spacing = body_.spacing();
-        const auto arrival = arrive(obstacle_, way.from, way.to - way.from, kNear * spacing, spacing);
-        if (!arrival) return;
-        if (const auto hit = hit_of(point, way, *arrival, cell)) add(point.anchor, to, *hit, hit->end);
-      });
+      if (body_.model->first_of_cell[cell] == body_.model->first_of_cell[cell + 1]) return;
+      const FaceByCell face = face_by(cell);
+      const bool is_far = face.clear > kNear * body_.spacing() + face.carried;
+      if (has_points_outside(cell) && !(is_far && is_thick)) try_points_outside(cell, face, is_thick);
+      if (!is_far) try_points_within(near, cell);
     });
     for (const ObstacleEdge& edge : obstacle_.edges) try_edge(edge, reach);
   }
@@ -194,13 +190,14 @@ class ObstacleContacts {
     return {box, {box.low - reach, box.high + reach}};
   }
 
-  /// Calls work(point, from, to) for those of a cell's points that may pass through the box.
+  /// Calls work(point, from, to) for those of a cell's points on the drawn surface, or inside, that may pass through the box.
   template <typename Work>
   void for_each_point_in(const Passage& passage, std::uint32_t cell, const Work& work) const {
     const ContactModel& model = *body_.model;
     const Bounds<3>& box = passage.box;
     for (std::uint32_t i = model.first_of_cell[cell]; i < model.first_of_cell[cell + 1]; ++i) {
       const TouchPoint& point = model.touch_points[i];
+      if (point.allowance > 0) continue;
       const Vector3f to = point.anchor.of(body_.ends);
       if (!contains(passage.ends, to)) continue;  // decided without looking where it begins
       const Vector3f from = point.anchor.of(body_.positions);
@@ -211,33 +208,67 @@ class ObstacleContacts {
     }
   }
 
-  /// Calls work(point, from) for those of a cell's points that are outside of the drawn surface.
+  /// The face of the obstacle, which is convex, that is nearest to the middle of a cell: the obstacle is behind it. In the world.
+  struct FaceByCell {
+    Vector3f normal, middle;  ///< the middle of the cell's box
+    float distance;           ///< metres of the middle from the face
+    float clear;              ///< metres that the whole box is in front of the face, at least
+    float carried;            ///< metres that the obstacle would carry a point of the box along, at most
+
+    float height(const Vector3f& place) const { return distance + normal.dot(place - middle); }
+  };
+  FaceByCell face_by(std::uint32_t cell) const {
+    const Bounds<3> box = cells_.boxes().at(cell);
+    const Vector3f middle = 0.5f * (box.low + box.high);
+    const Separation face = separation(obstacle_, obstacle_.to_own(middle));
+    const Vector3f normal = obstacle_.rotation * face.normal, half = 0.5f * (box.high - box.low);
+    const float arm = (middle - rigid_.centre).norm() + half.norm();
+    return {normal, middle, face.distance, face.distance - normal.cwiseAbs().dot(half),
+            step_ * (rigid_.velocity.norm() + rigid_.spin.norm() * arm)};
+  }
+
+  bool has_points_outside(std::uint32_t cell) const {
+    return body_.model->first_particle_of_cell[cell] < body_.model->first_of_cell[cell + 1];
+  }
+
+  /// Calls work(point, from, to) for those of a cell's points that are outside of the drawn surface. All are particles.
   template <typename Work>
   void for_each_point_outside(std::uint32_t cell, const Work& work) const {
     const ContactModel& model = *body_.model;
     for (std::uint32_t i = model.first_particle_of_cell[cell]; i < model.first_of_cell[cell + 1]; ++i) {
       const TouchPoint& point = model.touch_points[i];
       if (point.allowance <= 0) continue;
-      // It is a particle, a corner of its cell.
       const unsigned corner =
           (point.xi.x() > 0.5f ? 1u : 0) | (point.xi.y() > 0.5f ? 2u : 0) | (point.xi.z() > 0.5f ? 4u : 0);
-      work(point, body_.positions[point.anchor.particle[corner]]);
+      const std::uint32_t particle = point.anchor.particle[corner];
+      work(point, body_.positions[particle], body_.ends[particle]);
     }
   }
 
-  /// Of a cell. @param is_thick  of the obstacle
-  void try_points_outside(std::uint32_t cell, bool is_thick) {
+  /// @param is_thick  of the obstacle
+  void try_points_outside(std::uint32_t cell, const FaceByCell& face, bool is_thick) {
     const float near = kNear * body_.spacing();
-    std::optional<InnerPlace> inner;
-    for_each_point_outside(cell, [&](const TouchPoint& point, const Vector3f& from) {
-      const Vector3f to = point.anchor.of(body_.ends);
+    const Vector3f inner = inner_place(*body_.model, cell, body_.positions);
+    const bool is_inner_before = face.height(inner) > 0;
+    for_each_point_outside(cell, [&](const TouchPoint& point, const Vector3f& from, const Vector3f& to) {
+      // Most lines pass beside.
+      if (is_inner_before && face.height(from) > 0) return;
+      if (is_thick && face.height(to) > near + face.carried - point.allowance) return;
+      if (!overlap(near_, Bounds<3>{from.cwiseMin(inner), from.cwiseMax(inner)})) return;
       const PointWay way = way_of(from, to);
       if (is_thick && separation(obstacle_, way.to).distance > near - point.allowance) return;
-      if (!inner) inner = inner_place_of(cell);
-      if (!overlap(near_, Bounds<3>{from.cwiseMin(inner->in_world), from.cwiseMax(inner->in_world)})) return;
-      if (inner->clear > (from - inner->in_world).norm()) return;
-      const auto face = face_before_point_outside(way, *inner, point.allowance);
-      if (face && face->end <= near) add(point.anchor, to, *face, face->end - point.allowance);
+      const auto hit = face_before_point_outside(way, obstacle_.to_own(inner), point.allowance);
+      if (hit && hit->end <= near) add(point.anchor, to, *hit, hit->end - point.allowance);
+    });
+  }
+
+  void try_points_within(const Passage& near, std::uint32_t cell) {
+    const float spacing = body_.spacing();
+    for_each_point_in(near, cell, [&](const TouchPoint& point, const Vector3f& from, const Vector3f& to) {
+      const PointWay way = way_of(from, to);
+      const auto arrival = arrive(obstacle_, way.from, way.to - way.from, kNear * spacing, spacing);
+      if (!arrival) return;
+      if (const auto hit = hit_of(point, way, *arrival, cell)) add(point.anchor, to, *hit, hit->end);
     });
   }
 
@@ -441,8 +472,7 @@ class ObstacleContacts {
       const Bounds<3> around = cells_.boxes().at(cell);
       if (!overlap(near_, Bounds<3>{around.low.cwiseMin(inner), around.high.cwiseMax(inner)})) return;
       const Vector3f inside = origin_ ? *origin_ : obstacle_.to_own(inner);
-      for_each_point_outside(cell, [&](const TouchPoint& point, const Vector3f& from) {
-        const Vector3f to = point.anchor.of(body_.ends);
+      for_each_point_outside(cell, [&](const TouchPoint& point, const Vector3f& from, const Vector3f& to) {
         if (!overlap(deep.box,
                      Bounds<3>{from.cwiseMin(to).cwiseMin(inner), from.cwiseMax(to).cwiseMax(inner)}))
           return;
@@ -450,7 +480,6 @@ class ObstacleContacts {
         add_between(triangles, {&point, 0, way.from, way.to, inside});
       });
       for_each_point_in(deep, cell, [&](const TouchPoint& point, const Vector3f& from, const Vector3f& to) {
-        if (point.allowance > 0) return;
         const PointWay way = way_of(from, to);
         EndCells::PointAtTriangle at{&point, 0, way.from, way.to, inside};
         const std::size_t first = cells_.near_triangles.size();
@@ -625,30 +654,14 @@ class ObstacleContacts {
     return obstacle_.rotation.transpose() * way.stableNormalized();
   }
 
-  /// A place well inside of the body, near a cell.
-  struct InnerPlace {
-    Vector3f in_world, place;  ///< before the substep; in the obstacle's frame
-    float clear;               ///< metres from the obstacle
-  };
-  InnerPlace inner_place_of(std::uint32_t cell) const {
-    const Vector3f in_world = inner_place(*body_.model, cell, body_.positions);
-    const Vector3f place = obstacle_.to_own(in_world);
-    return {in_world, place, separation(obstacle_, place).distance};
-  }
-
   /// The contact of a point outside of the drawn surface, which may be deep in the obstacle or on its other side: the line to it from the
   /// inside of its body tells the face.
-  /// @param inner  of the point's cell
+  /// @param inside  the inner place of the point's cell, in the obstacle's frame
   /// @return  none: the line does not enter, the inner place does not tell, or another shape has the contact
-  std::optional<ObstacleHit> face_before_point_outside(const PointWay& way, const InnerPlace& inner,
+  std::optional<ObstacleHit> face_before_point_outside(const PointWay& way, const Vector3f& inside,
                                                        float allowance) {
     const float spacing = body_.spacing();
-    const Vector3f& inside = inner.place;
     const PointWay line{inside, way.from};
-    // Most lines pass beside: balls around both ends, which do not meet the obstacle, cover them.
-    const float clear_at_point = separation(obstacle_, line.to).distance;
-    if (inner.clear > 0 && clear_at_point > 0 && inner.clear + clear_at_point > (line.to - line.from).norm())
-      return {};
     const auto arrival = arrive(obstacle_, line.from, line.to - line.from, 0, spacing);
     // Where a body is pressed flat, its inside may be a little in the obstacle, too.
     if (!arrival || arrival->there.distance < -kPressedThrough * spacing) return {};
