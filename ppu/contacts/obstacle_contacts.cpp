@@ -483,14 +483,19 @@ class ObstacleContacts {
         const PointWay way = way_of(from, to);
         EndCells::PointAtTriangle at{&point, 0, way.from, way.to, inside};
         const std::size_t first = cells_.near_triangles.size();
-        const auto near = [&] { return std::span(cells_.near_triangles).subspan(first); };
+        bool is_any_near = false, is_behind_any = false;
         for_each_triangle(triangles, {way.from.cwiseMin(way.to) - margin, way.from.cwiseMax(way.to) + margin},
                           [&](std::uint32_t triangle) {
+                            is_any_near = true;
+                            const ObstacleTriangle one(obstacle_, triangles, triangle);
+                            if (!one.has_area()) return;
+                            // It may be the far side of a plate whose near side is not near the point.
+                            is_behind_any = is_behind_any || front * one.height(inside) < 0;
+                            if (one.passes_beside(way, spacing)) return;
                             at.triangle = triangle;
                             cells_.near_triangles.push_back(at);
                           });
-        if (near().empty() || is_behind_any(triangles, near(), front))
-          add_pressed_through(triangles, at, first);
+        if (!is_any_near || is_behind_any) add_pressed_through(triangles, at, first);
         leave_out_far_sides(triangles, first);
       });
     });
@@ -539,15 +544,6 @@ class ObstacleContacts {
                         at.triangle = triangle;
                         cells_.near_triangles.push_back(at);
                       });
-  }
-
-  /// Whether the body seems to be behind a triangle. It may be the far side of a plate whose near side is not near the point.
-  bool is_behind_any(const KnownTriangles& triangles, std::span<const EndCells::PointAtTriangle> near,
-                     float front) const {
-    return std::ranges::any_of(near, [&](const EndCells::PointAtTriangle& at) {
-      const ObstacleTriangle triangle(obstacle_, triangles, at.triangle);
-      return triangle.has_area() && front * triangle.height(at.inside) < 0;
-    });
   }
 
   void try_edges_of_triangles(const KnownTriangles& triangles, float reach) {

@@ -67,10 +67,20 @@ class ObstacleTriangle {
     if ((point.array() < box_.low.array() - farthest).any() ||
         (point.array() > box_.high.array() + farthest).any())
       return false;
-    // For triangles of a kilometre, or needles, floats give the nearest point only to a tenth of a millimetre, or worse.
-    const bool is_exact = face_.rounding < most * face_.area;
-    if (is_exact) return squared_beside<float>(triangle_, face_.normal, point) <= most * most;
+    if (is_exact(most)) return squared_beside<float>(triangle_, face_.normal, point) <= most * most;
     return squared_beside<double>(triangle_, face_.normal, point) <= double{most} * double{most};
+  }
+
+  /// Whether a point that is not deep behind the triangle has nothing to do with it, as it is never above or below it. For most triangles
+  /// near a point a look at their boxes shows it; false: it may have to do with it. @pre has_area()
+  bool passes_beside(const PointWay& way, float spacing) const {
+    const float most = kNear * spacing;
+    const float from = height(way.from), to = height(way.to);
+    if (std::abs(from) > kPressedThrough * spacing || !is_exact(most)) return false;
+    const Eigen::Vector3f a = way.from - from * face_.normal, b = way.to - to * face_.normal;
+    const float farthest = 2 * most + 0.01f * std::max(std::abs(from), std::abs(to));
+    return (a.cwiseMax(b).array() < box_.low.array() - farthest).any() ||
+           (a.cwiseMin(b).array() > box_.high.array() + farthest).any();
   }
 
   /// Whether two points are on different sides of the triangle's plane.
@@ -106,6 +116,9 @@ class ObstacleTriangle {
   }
 
  private:
+  /// For triangles of a kilometre, or needles, floats give the nearest point only to a tenth of a millimetre, or worse.
+  bool is_exact(float most) const { return face_.rounding < most * face_.area; }
+
   /// Of a point outside of the drawn surface: it is as deep behind the triangle as `allowance` says, or deeper, and the line to it from the
   /// inside of its body crosses the triangle. Where a body is pressed flat, its inside may be a little behind the triangle, too.
   std::optional<ObstacleHit> meet_outside(const PointWay& way, const Eigen::Vector3f& inside, float spacing,
