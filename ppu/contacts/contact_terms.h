@@ -13,6 +13,10 @@
 namespace softcell::ppu {
 
 inline constexpr float kNear = 0.005f;  ///< cells: points that come nearer in a substep are in contact
+/// Cells: a point this near behind a surface without an inside has been pressed through it; one this near in front may have been, from the
+/// other side. Where a body is pressed flat, its inside may be as deep in an obstacle.
+inline constexpr float kPressedThrough = 0.25f;
+inline constexpr float kAlike = 0.5f;  ///< cosine between normals: of faces that count as one
 
 inline bool contains(const Bounds<3>& box, const Eigen::Vector3f& point) {
   return (point.array() < box.high.array()).all() && (box.low.array() < point.array()).all();

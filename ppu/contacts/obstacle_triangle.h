@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "ppu/contacts/arrival.h"
 #include "ppu/contacts/contact_terms.h"
 #include "ppu/surfaces/known_triangles.h"
 #include "ppu/surfaces/obstacle.h"
@@ -16,22 +17,9 @@
 
 namespace softcell::ppu {
 
-// A point this near behind a triangle, in cells, has been pressed through it; a point this near in front may have been, from the other
-// side.
-inline constexpr float kPressedThrough = 0.25f;
-// A point farther behind, up to this, has been pressed through only if the line to it from well inside of the body crosses the triangle.
+// Cells: a point this deep behind a triangle, and deeper than kPressedThrough, has been pressed through it only if the line to it from well
+// inside of the body crosses the triangle.
 inline constexpr float kPressedDeepest = 2;
-
-/// A point before and after the substep, in the frame of an obstacle, as if the obstacle stood still.
-struct PointWay {
-  Eigen::Vector3f from, to;
-};
-
-/// A contact in the obstacle's frame.
-struct ObstacleHit {
-  Eigen::Vector3f normal;
-  float end;  ///< metres, along the normal, at the end of the motion: below 0 inside
-};
 
 /// How far a point is beside a triangle, squared: 0 if it is above or below it.
 /// @param normal  of the triangle, of unit length
