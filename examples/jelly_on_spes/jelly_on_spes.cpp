@@ -4,6 +4,7 @@
 
 #include <cstdio>
 #include <exception>
+#include <stdexcept>
 
 #include "softcell/bullet/bullet_soft_bodies.h"
 #include "softcell/mesh_import/mesh_import.h"
