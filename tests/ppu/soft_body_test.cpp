@@ -151,8 +151,8 @@ SoftBody<3> moving_body() {
 TEST(SoftBodyModel, SaysWhereAStrengthIsRefusedAndInAllItsDigits) {
   const auto refusal_of = [](float strength) -> std::string {
     try {
-      make_soft_body_model(make_box({0.2f, 0.2f, 0.2f}, 1), {.cell_size = 0.2f},
-                           [=](const Vector3f&) { return strength; });
+      make_soft_body_model(make_box({1, 0.5f, 0.5f}, 1), {.cell_size = 0.5f},
+                           [=](const Vector3f& at) { return at.x() > 0 ? strength : 1; });
     } catch (const std::runtime_error& error) {
       return error.what();
     }
@@ -160,9 +160,9 @@ TEST(SoftBodyModel, SaysWhereAStrengthIsRefusedAndInAllItsDigits) {
   };
   EXPECT_EQ(refusal_of(0), "accepted");
   EXPECT_EQ(refusal_of(-1e-9f),
-            "the strength of a soft body at (0, 0, 0) is -1e-09; it must be 0 or above, and finite");
+            "the strength of a soft body at (0.25, 0, 0) is -1e-09; it must be 0 or above, and finite");
   EXPECT_EQ(refusal_of(NAN),
-            "the strength of a soft body at (0, 0, 0) is nan; it must be 0 or above, and finite");
+            "the strength of a soft body at (0.25, 0, 0) is nan; it must be 0 or above, and finite");
 }
 
 TEST(SoftBody, BeginsAtRestInItsPlace) {
