@@ -3,7 +3,6 @@
 #include <btBulletDynamicsCommon.h>
 
 #include <cstdio>
-#include <exception>
 #include <stdexcept>
 
 #include "softcell/bullet/bullet_soft_bodies.h"
