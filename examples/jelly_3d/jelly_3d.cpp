@@ -13,7 +13,7 @@
 using namespace softcell::ppu;
 
 int main(int argc, char** argv) try {
-  // A Bullet world as in any program, made behind its bodies: it must go before them.
+  // A Bullet world as in any program. Its shapes and bodies are declared first, so that the world is destroyed before them.
   btStaticPlaneShape ground({0, 1, 0}, 0);
   btRigidBody floor(0, nullptr, &ground);
   btBoxShape cube({0.25f, 0.25f, 0.25f});

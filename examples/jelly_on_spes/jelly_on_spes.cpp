@@ -3,7 +3,7 @@
 #include <btBulletDynamicsCommon.h>
 
 #include <cstdio>
-#include <exception>
+#include <stdexcept>
 
 #include "softcell/bullet/bullet_soft_bodies.h"
 #include "softcell/mesh_import/mesh_import.h"

@@ -15,7 +15,7 @@
 using namespace softcell::ppu;
 
 int main() try {
-  // A Bullet world as in any program, made behind its bodies: it must go before them.
+  // A Bullet world as in any program. Its shapes and bodies are declared first, so that the world is destroyed before them.
   btStaticPlaneShape ground({0, 1, 0}, 0);
   btRigidBody floor(0, nullptr, &ground);
   btBoxShape bar({0.1f, 0.08f, 1});

@@ -20,6 +20,12 @@ inline bool passes_time(const char* what, float step) {
   return step > 0;
 }
 
+/// @throws std::invalid_argument  it is null
+inline void require_model(const void* model) {
+  if (model == nullptr)
+    throw std::invalid_argument("a soft body needs a model; make_soft_body_model() makes one");
+}
+
 /// A soft body of a world. @throws std::out_of_range  there are not so many
 template <class CoupledBodies>
 const auto& body_at(const CoupledBodies& bodies, std::size_t index) {

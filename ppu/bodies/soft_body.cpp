@@ -151,8 +151,8 @@ struct SoftBody<kDimension>::RestShape {
   std::shared_ptr<std::vector<Vector>> seen = std::make_shared<std::vector<Vector>>();  // positions, metres
 
   std::shared_ptr<const Shape> shape;  // null: the model's
-  std::shared_future<std::shared_ptr<const Shape>>
-      next;  // result of a flow that was begun; null: the shape has not changed
+  // Result of a flow that was begun; null: the shape has not changed.
+  std::shared_future<std::shared_ptr<const Shape>> next;
   // The last result was a new shape. Whether it goes on flowing is found out by flows().
   bool is_flowing = false;
   std::shared_ptr<const Shape> worn;  // the previous shape: flows() destroys it with the next flow
@@ -490,6 +490,23 @@ void SoftBody<kDimension>::translate(const Vector& by) {
   SC_ASSERT(by.allFinite(), "a body of {} particles is moved to infinity or NaN", x_.size());
   for (std::size_t i = 0; i < x_.size(); ++i) set_position(i, x_[i] + by);
   lost_->forget();  // it referred to the old place
+  ++revision_;
+}
+
+template <int kDimension>
+void SoftBody<kDimension>::set_state(std::span<const Vector> positions, std::span<const Vector> velocities) {
+  if (positions.size() != x_.size() || velocities.size() != x_.size())
+    throw std::runtime_error("a soft body of " + base::counted(x_.size(), "particle") + " was given " +
+                             base::counted(positions.size(), "position") + " and " +
+                             base::counted(velocities.size(), "velocity", "velocities"));
+  for (std::size_t i = 0; i < x_.size(); ++i) {
+    if (!positions[i].allFinite() || !velocities[i].allFinite())
+      throw std::runtime_error("a soft body was given a state whose particle " + std::to_string(i) + " of " +
+                               std::to_string(x_.size()) + " is not finite");
+  }
+  for (std::size_t i = 0; i < x_.size(); ++i) set_particle(i, positions[i], velocities[i]);
+  forget_rotations();
+  lost_->forget();
   ++revision_;
 }
 

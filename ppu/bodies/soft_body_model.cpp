@@ -56,6 +56,14 @@ std::vector<bool> particles_at_cuts(const Lattice<2>& piece, const Lattice<2>& w
   return at_cut;
 }
 
+/// "(0.1, 2, -3)"
+template <int kDimension>
+std::string place_text(const Eigen::Vector<float, kDimension>& place) {
+  std::string text;
+  for (const float coordinate : place) text += (text.empty() ? "(" : ", ") + base::shortest(coordinate);
+  return text + ")";
+}
+
 template <int kDimension>
 std::vector<float> strengths_of(
     const Lattice<kDimension>& lattice,
@@ -66,8 +74,8 @@ std::vector<float> strengths_of(
         lattice.origin + lattice.spacing * (lattice.cells[c].template cast<float>().array() + 0.5f).matrix();
     strengths.push_back(strength(middle));
     if (!(strengths.back() >= 0) || !std::isfinite(strengths.back()))
-      throw std::runtime_error("the strength of a soft body at a place is " +
-                               std::to_string(strengths.back()) + "; it must be 0 or above, and finite");
+      throw std::runtime_error("the strength of a soft body at " + place_text(middle) + " is " +
+                               base::shortest(strengths.back()) + "; it must be 0 or above, and finite");
   }
   return strengths;
 }

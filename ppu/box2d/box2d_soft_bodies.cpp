@@ -13,6 +13,7 @@
 #include "ppu/bodies/break_body.h"
 #include "ppu/bodies/breaks.h"
 #include "ppu/bodies/checked_arguments.h"
+#include "ppu/bodies/processor_time.h"
 #include "ppu/bodies/step_ahead.h"
 #include "ppu/bodies/workshop.h"
 #include "ppu/box2d/box2d_attachments.h"
@@ -51,33 +52,30 @@ struct Box2dSoftBodies::Impl {
   }
   ~Impl() { workshop.reset(); }  // its threads use all of this
 
-  template <typename Work>
-  void timed(const Work& work) {
-    const auto begin = std::chrono::steady_clock::now();
-    work();
-    spent += std::chrono::steady_clock::now() - begin;
-  }
-
   void begin_step(float step) {
     SC_ASSERT(step > 0 && std::isfinite(step), "a time step of {} s", step);
     SC_ASSERT(!world.IsLocked(), "a step of {} s within a step of Box2D", step);
     SC_ASSERT(!begun, "begin_step({} s) after begin_step({} s), without end_step() in between", step, *begun);
-    if (!solve.has_begun(step) || std::ranges::any_of(bodies, [](const auto& body) {
-          return body->was_changed() || body->was_pushed();
-        })) {
-      solve.drop();
-      for (const auto& body : bodies) {
-        if (body->was_reset()) solve.forget(body->soft());
-        if (body->is_of_other_model()) take_other_model(*body);
-        if (surfaces && body->was_changed()) surfaces->tell_those_on(*body);
-        body->begin_step();
+    timed(times.gather, [&] {
+      if (!solve.has_begun(step) || std::ranges::any_of(bodies, [](const auto& body) {
+            return body->was_changed() || body->was_pushed();
+          })) {
+        solve.drop();
+        for (const auto& body : bodies) {
+          if (body->was_reset()) solve.forget(body->soft());
+          if (body->is_of_other_model()) take_other_model(*body);
+          if (surfaces && body->was_changed()) surfaces->tell_those_on(*body);
+          body->begin_step();
+        }
       }
-    }
-    waited += solve.finish(step);
-    breaks.test_late(solve, *this);
-    if (!surfaces) attachments.solve(bodies, step);
-    for (const auto& body : bodies) body->hand_over(step);
-    if (surfaces) surfaces->step(bodies, attachments, step);
+    });
+    timed(times.solve, [&] { times.wait += solve.finish(step); });
+    timed(times.apply, [&] {
+      breaks.test_late(solve, *this);
+      if (!surfaces) attachments.solve(bodies, step);
+      for (const auto& body : bodies) body->hand_over(step);
+    });
+    if (surfaces) timed(times.contacts, [&] { surfaces->step(bodies, attachments, step); });
     begun = step;
   }
 
@@ -85,10 +83,16 @@ struct Box2dSoftBodies::Impl {
     SC_ASSERT(!world.IsLocked(), "end_step({} s) within a step of Box2D", step);
     SC_ASSERT(begun == step, "end_step({} s) after begin_step({} s)", step, begun.value_or(0));
     begun.reset();
-    for (const auto& body : bodies) body->end_step(step);
-    parting.update();
-    break_strained();
-    if (!sleep) return;
+    timed(times.gather, [&] {
+      for (const auto& body : bodies) body->end_step(step);
+      parting.update();
+      break_strained();
+      if (sleep) let_sleep(step);
+    });
+  }
+
+  /// @pre bodies may sleep
+  void let_sleep(float step) {
     for (const auto& body : bodies)
       if (!body->soft().asleep() && !attachments.holds(*body)) body->count_stillness(step, sleep->speed);
     if (surfaces) surfaces->forget_destroyed();
@@ -127,16 +131,18 @@ struct Box2dSoftBodies::Impl {
     SC_ASSERT(!world.IsLocked(), "one of {} bodies is cut within a step of Box2D", bodies.size());
     if (coupled.is_of_other_model()) take_other_model(coupled);
     if (breaks.is_breaking(coupled, *this)) {
-      if (std::optional<Break> one = breaks.take(coupled)) put_pieces(coupled, one->pieces.get(), one->faces);
+      if (std::optional<Break> one = breaks.take(coupled))
+        put_pieces_if_room(coupled, one->pieces.get(), one->faces);
     }
     coupled.take_over_particles();
     return coupled;
   }
 
   static constexpr std::size_t kMostBodies = 32768;  // one for each negative group
+  bool has_groups(std::size_t more) const { return surfaces || bodies.size() + more <= kMostBodies; }
   /// @throws std::runtime_error  there would be too many bodies
   void require_groups(std::size_t more) const {
-    if (!surfaces && bodies.size() + more > kMostBodies)
+    if (!has_groups(more))
       throw std::runtime_error("a Box2D world has at most " + std::to_string(kMostBodies) +
                                " soft bodies: there are no more collision groups");
   }
@@ -194,16 +200,16 @@ struct Box2dSoftBodies::Impl {
 
   void break_strained() {
     breaks.test(bodies, *this);
-    for (Break& one : breaks.take_due()) put_pieces(*one.body, one.pieces.get(), one.faces);
+    for (Break& one : breaks.take_due()) put_pieces_if_room(*one.body, one.pieces.get(), one.faces);
   }
 
   /// @param steps  from now until the pieces appear
   void begin_break(Box2dBody& body, std::span<const std::uint32_t> faces, int steps) {
-    const std::shared_ptr<const SoftBodyModel<2>>& model = body.soft().shared_model();
     if (steps == 0) {
-      put_pieces(body, make_pieces(model, faces, least_cells_of(body.soft()), whole_of(model)), faces.size());
+      put_pieces_if_room(body, make_pieces(body, faces), faces.size());
       return;
     }
+    const std::shared_ptr<const SoftBodyModel<2>>& model = body.soft().shared_model();
     breaks.begin(body, faces.size(), steps,
                  workshop->begin([this, model, own = std::vector<std::uint32_t>(faces.begin(), faces.end()),
                                   least_cells = least_cells_of(body.soft()), whole = whole_of(model)] {
@@ -228,6 +234,11 @@ struct Box2dSoftBodies::Impl {
         pieces.touching.push_back(SurfaceContacts2d::make_piece(piece.body.shared_model(), *whole));
     }
     return pieces;
+  }
+
+  Pieces make_pieces(const Box2dBody& body, std::span<const std::uint32_t> faces) {
+    const std::shared_ptr<const SoftBodyModel<2>>& model = body.soft().shared_model();
+    return make_pieces(model, faces, least_cells_of(body.soft()), whole_of(model));
   }
 
   /// @param faces  that broke   @return the pieces that stay, except for the body itself
@@ -273,6 +284,11 @@ struct Box2dSoftBodies::Impl {
     return event.pieces;
   }
 
+  /// In a step: a program can do nothing there about a body that finds no groups for its pieces. So the body stays whole.
+  void put_pieces_if_room(Box2dBody& body, Pieces made, std::size_t faces) {
+    if (has_groups(made.planned.stay.size() - 1)) put_pieces(body, std::move(made), faces);
+  }
+
   /// A query of the outline as it is drawn now.
   SurfaceQuery<2> query(const SoftBody<2>& soft) {
     return surfaces ? SurfaceQuery<2>(soft, surfaces->skin(soft.shared_model())) : SurfaceQuery<2>(soft);
@@ -295,7 +311,7 @@ struct Box2dSoftBodies::Impl {
   std::optional<SurfaceContacts2d> surfaces;  // none: bodies touch with circles
   std::optional<SleepSettings> sleep;
   std::optional<float> begun;  // seconds, between begin_step() and end_step()
-  std::chrono::nanoseconds spent{0}, waited{0};
+  SoftBodyTimes times;
   StepAhead<2> solve;                    // of `bodies`
   BreaksOfBodies breaks;                 // of `bodies`
   std::vector<BrokenSoftBody2d> broken;  // since the last call that returned them
@@ -315,8 +331,8 @@ Box2dSoftBodies::~Box2dSoftBodies() = default;
 
 SoftBody<2>& Box2dSoftBodies::add(std::shared_ptr<const SoftBodyModel<2>> model, const Vector2f& position,
                                   const Skin2d* drawn) {
-  SC_ASSERT(model != nullptr && position.allFinite(), "a soft body {} a model, at ({}, {})",
-            model ? "with" : "without", position.x(), position.y());
+  require_model(model.get());
+  SC_ASSERT(position.allFinite(), "a soft body at ({}, {})", position.x(), position.y());
   SC_ASSERT(!impl_->world.IsLocked(), "add() of body {} within a step of Box2D", impl_->bodies.size());
   if (drawn != nullptr) {
     validate(*drawn, model->lattice());
@@ -349,19 +365,21 @@ std::vector<SoftBody<2>*> Box2dSoftBodies::cut(const SoftBody<2>& body, const Cu
   Box2dBody& coupled = impl_->find_breakable(body);
   const std::vector<std::uint32_t> faces = faces_across(body, where);
   if (faces.empty()) return {};
-  return impl_->put_pieces(coupled,
-                           impl_->make_pieces(body.shared_model(), faces, least_cells_of(body),
-                                              impl_->whole_of(body.shared_model())),
-                           faces.size());
+  return impl_->put_pieces(coupled, impl_->make_pieces(coupled, faces), faces.size());
 }
 
 bool Box2dSoftBodies::begin_cut(const SoftBody<2>& body, const Cut2d& where) {
   Box2dBody& coupled = impl_->find_breakable(body);
   const std::vector<std::uint32_t> faces = faces_across(body, where);
   if (faces.empty()) return false;
+  const int steps = substeps_until_pieces(body.positions().size());
+  if (steps == 0) {
+    impl_->put_pieces(coupled, impl_->make_pieces(coupled, faces), faces.size());
+    return true;
+  }
   impl_->solve.drop();
   if (coupled.soft().asleep()) coupled.wake();
-  impl_->begin_break(coupled, faces, substeps_until_pieces(body.positions().size()));
+  impl_->begin_break(coupled, faces, steps);
   return true;
 }
 
@@ -414,15 +432,15 @@ void Box2dSoftBodies::step(float step, int velocity_iterations, int position_ite
 }
 
 void Box2dSoftBodies::begin_step(float step) {
-  if (passes_time(kStep, step)) impl_->timed([&] { impl_->begin_step(step); });
+  if (passes_time(kStep, step)) impl_->begin_step(step);
 }
 
 void Box2dSoftBodies::end_step(float step) {
-  if (passes_time(kStep, step)) impl_->timed([&] { impl_->end_step(step); });
+  if (passes_time(kStep, step)) impl_->end_step(step);
 }
 
 void Box2dSoftBodies::begin_ahead(float step) {
-  if (passes_time(kStep, step)) impl_->timed([&] { impl_->solve.begin(step); });
+  if (passes_time(kStep, step)) timed(impl_->times.solve, [&] { impl_->solve.begin(step); });
 }
 
 void Box2dSoftBodies::shift_origin(const Vector2f& new_origin) {
@@ -461,10 +479,8 @@ Box2dSoftBodies::Particle Box2dSoftBodies::particle_of(const b2Body& body) const
   return {&found->second.body->soft(), found->second.number};
 }
 
-std::vector<Contact2d> Box2dSoftBodies::contacts() const {
-  std::vector<Contact2d> contacts;
+void Box2dSoftBodies::append_contacts(std::vector<Contact2d>& contacts) const {
   if (impl_->surfaces) impl_->surfaces->append_contacts(contacts);
-  return contacts;
 }
 
 void Box2dSoftBodies::watch_contacts(bool watch) {
@@ -492,7 +508,6 @@ std::optional<SoftRayHit2d> Box2dSoftBodies::cast_ray(const Eigen::Vector2f& fro
   return nearest;
 }
 
-std::chrono::nanoseconds Box2dSoftBodies::time_spent() const { return impl_->spent; }
-std::chrono::nanoseconds Box2dSoftBodies::time_waited() const { return impl_->waited; }
+SoftBodyTimes Box2dSoftBodies::times() const { return impl_->times; }
 
 }  // namespace softcell::ppu

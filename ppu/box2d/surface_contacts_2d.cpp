@@ -39,7 +39,7 @@ float largest_cell(SurfaceContacts2d::Bodies bodies) {
 
 SurfaceContacts2d::SurfaceContacts2d(b2World& world, std::shared_ptr<ContactWorker> worker)
     : world_(world), worker_(std::move(worker)) {
-  stage_.attachments = &attachments_;
+  solver_.attachments = &attachments_;
 }
 
 /// A piece is drawn as its part of the whole, and touches as it is drawn.
@@ -52,8 +52,8 @@ void SurfaceContacts2d::adopt(std::unique_ptr<Model> piece) { models_.adopt(std:
 
 const std::shared_ptr<const SurfaceContacts2d::Model>& SurfaceContacts2d::model_of(
     const std::shared_ptr<const SoftBodyModel<2>>& model) {
-  std::shared_ptr<const Model>& known =
-      models_[model.get()];  // keeps its address, even when others are added
+  // Keeps its address, even when others are added.
+  std::shared_ptr<const Model>& known = models_[model.get()];
   if (known) return known;
   if (model->is_piece())
     known = make_piece(model, *whole_of(model));
@@ -91,7 +91,7 @@ void SurfaceContacts2d::begin_attachments(Bodies bodies, Box2dAttachments& attac
 }
 
 void SurfaceContacts2d::begin(Bodies bodies, const Box2dAttachments& attachments, float step) {
-  in_stage_.resize(bodies.size());
+  in_substep_.resize(bodies.size());
   softs_.clear();
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     Box2dBody& body = *bodies[i];
@@ -102,23 +102,23 @@ void SurfaceContacts2d::begin(Bodies bodies, const Box2dAttachments& attachments
     kept.model = model_of(soft.shared_model());
     lift(body, kept, step);
     softs_.push_back(&soft);
-    BodyInStage& in_stage = in_stage_[i];
-    in_stage = {.model = &kept.model->contact,
-                .positions = kept.positions,
-                .velocities = kept.velocities,
-                .friction = std::sqrt(soft.settings().friction),
-                .restitution = soft.settings().restitution,
-                .box = box_of_step(kept.positions, kept.velocities, step),
-                .obstacles = std::move(in_stage.obstacles),
-                .sides = &kept.sides};
-    in_stage.obstacles.clear();
-    in_stage.filter = body.filter();
-    obstacles_.add_near(in_stage.box, soft.centre_of_mass(), in_stage.filter, in_stage.obstacles);
-    std::erase_if(in_stage.obstacles, [&](std::uint32_t obstacle) {
+    BodyInSubstep& in_substep = in_substep_[i];
+    in_substep = {.model = &kept.model->contact,
+                  .positions = kept.positions,
+                  .velocities = kept.velocities,
+                  .friction = std::sqrt(soft.settings().friction),
+                  .restitution = soft.settings().restitution,
+                  .box = box_of_step(kept.positions, kept.velocities, step),
+                  .obstacles = std::move(in_substep.obstacles),
+                  .sides = &kept.sides};
+    in_substep.obstacles.clear();
+    in_substep.filter = body.filter();
+    obstacles_.add_near(in_substep.box, soft.centre_of_mass(), in_substep.filter, in_substep.obstacles);
+    std::erase_if(in_substep.obstacles, [&](std::uint32_t obstacle) {
       return attachments.parts(body, *obstacles_.bodies()[obstacles_.obstacles()[obstacle].rigid]);
     });
     if (!soft.asleep()) kept.seen.clear();
-    if (soft.asleep()) wake_if_disturbed(kept, body, in_stage);
+    if (soft.asleep()) wake_if_disturbed(kept, body, in_substep);
     if (!soft.asleep() && kept.lies()) rise(kept);
   }
 }
@@ -136,13 +136,13 @@ void SurfaceContacts2d::see(Kept& kept, b2Body& body) {
 
 /// Wakes a sleeper if a body beside it has begun to move, or what it lies on is gone or has moved. In the latter case it tells those on it:
 /// a support that moves slowly, such as a lift, moves nobody so fast that others would wake.
-void SurfaceContacts2d::wake_if_disturbed(Kept& kept, Box2dBody& body, const BodyInStage& in_stage) {
+void SurfaceContacts2d::wake_if_disturbed(Kept& kept, Box2dBody& body, const BodyInSubstep& in_substep) {
   const auto moves_there = [&](std::uint32_t obstacle) {
     b2Body& beside = *obstacles_.bodies()[obstacles_.obstacles()[obstacle].rigid];
     see(kept, beside);
     return moves(beside);
   };
-  if (std::ranges::any_of(in_stage.obstacles, moves_there)) {
+  if (std::ranges::any_of(in_substep.obstacles, moves_there)) {
     body.wake();
   } else if (has_lost_support(kept, body.soft())) {
     body.wake();
@@ -183,9 +183,10 @@ void SurfaceContacts2d::wake_those_in_the_way(Bodies bodies) {
   for (std::uint32_t i = 0; i < bodies.size(); ++i)
     if (!bodies[i]->soft().asleep() && bodies[i]->moves()) moving_.push_back(i);
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    BodyInStage& sleeper = in_stage_[i];
+    BodyInSubstep& sleeper = in_substep_[i];
     const auto hits = [&](std::uint32_t other) {
-      return overlap(sleeper.box, in_stage_[other].box) && sleeper.filter.may_touch(in_stage_[other].filter);
+      return overlap(sleeper.box, in_substep_[other].box) &&
+             sleeper.filter.may_touch(in_substep_[other].filter);
     };
     if (bodies[i]->soft().asleep() && std::ranges::any_of(moving_, hits)) {
       bodies[i]->wake();
@@ -207,16 +208,16 @@ void SurfaceContacts2d::step(Bodies bodies, Box2dAttachments& attachments, float
   begin(bodies, attachments, step);
   models_.forget_unused();  // now each body holds what it uses
   wake_those_in_the_way(bodies);
-  stage_.settings.bounces = {
+  solver_.settings.bounces = {
       .least_speed = 1,  // Box2D's threshold for restitution
       .gravity = {world_.GetGravity().x, world_.GetGravity().y, 0},
       .mix = BounceSettings::Mix::kLarger,
   };
   std::size_t particles = 0;
   for (const auto& body : bodies) particles += body->soft().positions().size();
-  if (particles >= kFewParticles) stage_.worker = worker_.get();
+  if (particles >= kFewParticles) solver_.worker = worker_.get();
   const RigidLinks links = links_.find(obstacles_, attached_rigids_, step);
-  stage_.step(in_stage_, obstacles_.obstacles(), obstacles_.rigids(), links, step);
+  solver_.step(in_substep_, obstacles_.obstacles(), obstacles_.rigids(), links, step);
   move(bodies, step);
   obstacles_.apply();
   attachments.end();
@@ -229,16 +230,16 @@ void SurfaceContacts2d::step(Bodies bodies, Box2dAttachments& attachments, float
 
 void SurfaceContacts2d::move(Bodies bodies, float step) {
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    if (in_stage_[i].asleep) continue;
+    if (in_substep_[i].asleep) continue;
     SoftBody<2>& soft = bodies[i]->soft();
     MeanSpeed real;
     for (std::size_t p = 0; p < soft.positions().size(); ++p) {
-      const Vector2f velocity = FlatLayer::lower(stage_.velocities(i), p);
-      const Vector2f moved = velocity + FlatLayer::lower(stage_.pushes(i), p);
+      const Vector2f velocity = FlatLayer::lower(solver_.velocities(i), p);
+      const Vector2f moved = velocity + FlatLayer::lower(solver_.pushes(i), p);
       soft.set_particle(p, soft.position(p) + step * moved, velocity);
-      if (stage_.is_crushed(i)) real.add(soft.model().masses()[p], moved);
+      if (solver_.is_crushed(i)) real.add(soft.model().masses()[p], moved);
     }
-    bodies[i]->set_real_speed(stage_.is_crushed(i) ? std::optional(real.value()) : std::nullopt);
+    bodies[i]->set_real_speed(solver_.is_crushed(i) ? std::optional(real.value()) : std::nullopt);
     kept_.at(bodies[i].get()).place_of_sides = soft.position(0);
   }
 }
@@ -246,7 +247,7 @@ void SurfaceContacts2d::move(Bodies bodies, float step) {
 /// Keeps rigid bodies awake that press on a soft body which is awake.
 void SurfaceContacts2d::note_touches(Bodies bodies) {
   pressing_.clear();
-  stage_.append_contacts(pressing_);
+  solver_.append_contacts(pressing_);
   touches_.soft.clear();
   touches_.rigid.clear();
   for (const PressingContact& contact : pressing_) {
@@ -355,7 +356,7 @@ void SurfaceContacts2d::forget_contacts(const Box2dBody& body) {
   std::erase_if(touches_.soft, [&](const auto& pair) { return pair.first == &body || pair.second == &body; });
   std::erase_if(touches_.rigid, [&](const auto& pair) { return pair.first == &body; });
   tell_those_on(body);
-  stage_.forget_who_presses();
+  solver_.forget_who_presses();
 }
 
 void SurfaceContacts2d::forget(const Box2dBody& body) {

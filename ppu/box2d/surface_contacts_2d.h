@@ -16,7 +16,7 @@
 #include "ppu/box2d/box2d_links.h"
 #include "ppu/box2d/box2d_obstacles.h"
 #include "ppu/box2d/rest.h"
-#include "ppu/contacts/contact_stage.h"
+#include "ppu/contacts/contact_solver.h"
 #include "ppu/contacts/flat_attachments.h"
 #include "ppu/contacts/touch_log.h"
 #include "ppu/surfaces/cell_finder.h"
@@ -125,7 +125,7 @@ class SurfaceContacts2d {
   Support as_it_is(b2Body& body) { return {&body, body.GetTransform(), obstacles_.look(body)}; }
   bool is_gone(const Support& support);
   void see(Kept& kept, b2Body& body);
-  void wake_if_disturbed(Kept& kept, Box2dBody& body, const BodyInStage& in_stage);
+  void wake_if_disturbed(Kept& kept, Box2dBody& body, const BodyInSubstep& in_substep);
   bool has_lost_support(const Kept& kept, const SoftBody<2>& sleeper);
   void rise(Kept& kept);
   void wake_those_in_the_way(Bodies bodies);
@@ -144,8 +144,8 @@ class SurfaceContacts2d {
   Box2dLinks links_;
   FlatAttachments attachments_;
   std::vector<std::uint32_t> attached_rigids_;
-  ContactStage stage_;
-  std::vector<BodyInStage> in_stage_;
+  ContactSolver solver_;
+  std::vector<BodyInSubstep> in_substep_;
   std::vector<std::uint32_t> moving_;      // bodies that wake those in their way
   std::vector<const SoftBody<2>*> softs_;  // of the last step
   std::vector<PressingContact> pressing_;  // of the last step

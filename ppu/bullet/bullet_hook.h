@@ -33,7 +33,11 @@ class BulletHook {
 
   /// Adds to the time spent on this world's soft bodies. Bullet's profiler does not count it in a release build.
   void add_time(std::chrono::nanoseconds time) { spent_ += time; }
-  std::chrono::nanoseconds spent() const { return spent_; }
+  /// The elapsed time of the soft bodies of a world in its steps, since it got its hook; 0: it has none.
+  static std::chrono::nanoseconds spent_in(const btDynamicsWorld& world) {
+    const BulletHook* const hook = find(world);
+    return hook != nullptr ? hook->spent_ : std::chrono::nanoseconds(0);
+  }
 
   explicit BulletHook(btDiscreteDynamicsWorld& world);
 

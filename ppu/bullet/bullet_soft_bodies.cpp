@@ -3,6 +3,7 @@
 #include <BulletDynamics/Dynamics/btActionInterface.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -14,13 +15,13 @@
 #include "ppu/bodies/break_body.h"
 #include "ppu/bodies/breaks.h"
 #include "ppu/bodies/checked_arguments.h"
+#include "ppu/bodies/processor_time.h"
 #include "ppu/bodies/step_ahead.h"
 #include "ppu/bodies/workshop.h"
 #include "ppu/bullet/bullet_hook.h"
 #include "ppu/bullet/contact_sphere.h"
 #include "ppu/bullet/free_body.h"
 #include "ppu/bullet/prepared_piece.h"
-#include "ppu/bullet/processor_time.h"
 #include "ppu/bullet/sphere_body.h"
 #include "ppu/bullet/surface_contacts.h"
 #include "ppu/contacts/crushed_cells.h"
@@ -29,18 +30,6 @@
 #include "softcell/base/assert.h"
 
 namespace softcell::ppu {
-namespace {
-
-/// Adds the processor time of the work to `time`.
-template <typename Work>
-void timed(std::chrono::nanoseconds& time, const Work& work) {
-  const auto begin = processor_time();
-  work();
-  time += processor_time() - begin;
-}
-
-}  // namespace
-
 struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
   /// @param solver  a SoftBodySolver<3>, or the pointer that owns one
   template <typename Solver>
@@ -302,8 +291,8 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
 
   btDiscreteDynamicsWorld& world;
   std::vector<std::unique_ptr<CoupledBody>> bodies;
-  std::optional<SurfaceContacts>
-      surfaces;  // of bodies that touch with their surfaces: either all that touch, or none
+  // Of bodies that touch with their surfaces: either all that touch, or none.
+  std::optional<SurfaceContacts> surfaces;
   std::vector<SurfaceBody*> with_surfaces;  // of `bodies`
   std::uint32_t next_number = 0;
   StepAhead<3> solve;                  // of `bodies`
@@ -328,8 +317,8 @@ BulletSoftBodies::~BulletSoftBodies() = default;
 
 SoftBody<3>& BulletSoftBodies::add(std::shared_ptr<const SoftBodyModel<3>> model,
                                    const Eigen::Vector3f& position) {
-  SC_ASSERT(model != nullptr && position.allFinite(), "a soft body {} a model, at ({}, {}, {})",
-            model ? "with" : "without", position.x(), position.y(), position.z());
+  require_model(model.get());
+  SC_ASSERT(position.allFinite(), "a soft body at ({}, {}, {})", position.x(), position.y(), position.z());
   if (model->settings().fracture && model->settings().contacts && !impl_->surfaces)
     throw std::invalid_argument(
         "a soft body with a fracture touches with spheres; only bodies that touch with their surfaces break");
@@ -477,11 +466,6 @@ BulletSoftBodies::Particle BulletSoftBodies::particle_of(const btCollisionObject
   if (!ContactSphere::is_shape_of(object)) return {};
   return {static_cast<const SoftBody<3>*>(object.getUserPointer()),
           static_cast<std::size_t>(object.getUserIndex())};
-}
-
-std::chrono::nanoseconds BulletSoftBodies::time_spent(const btDynamicsWorld& world) {
-  const BulletHook* const hook = BulletHook::find(world);
-  return hook ? hook->spent() : std::chrono::nanoseconds(0);
 }
 
 }  // namespace softcell::ppu

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "ppu/bullet/bullet_hook.h"
 #include "ppu/bullet/bullet_vector.h"
 #include "softcell/base/assert.h"
 #include "softcell/bullet/bullet_soft_bodies.h"
@@ -331,7 +332,7 @@ StepTimes BulletWorld::step(float seconds, int substeps) {
     throw std::invalid_argument("a step needs a time above 0 and at least one substep");
   }
   const auto begin = std::chrono::steady_clock::now();
-  const auto soft_begin = BulletSoftBodies::time_spent(impl_->world);
+  const auto soft_begin = BulletHook::spent_in(impl_->world);
   const float substep = seconds / static_cast<float>(substeps);
   // One call per substep: with maxSubSteps = 0 Bullet takes the step as it is, and keeps no remainder.
   for (const Motor& motor : impl_->motors) motor.hinge->setMaxMotorImpulse(motor.torque * substep);
@@ -340,7 +341,7 @@ StepTimes BulletWorld::step(float seconds, int substeps) {
     impl_->world.stepSimulation(substep, 0);
     impl_->end_moves();
   }
-  const auto soft = BulletSoftBodies::time_spent(impl_->world) - soft_begin;
+  const auto soft = BulletHook::spent_in(impl_->world) - soft_begin;
   const auto all = std::chrono::steady_clock::now() - begin;
   return {.physics_ms = milliseconds(all - soft), .soft_body_ms = milliseconds(soft)};
 }

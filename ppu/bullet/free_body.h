@@ -1,5 +1,5 @@
 #pragma once
-// A soft body that touches nothing (SoftBodySettings::contacts is false). Neither Bullet nor the contact stage knows of it.
+// A soft body that touches nothing (SoftBodySettings::contacts is false). Neither Bullet nor the contact solver knows of it.
 
 #include <memory>
 #include <optional>

@@ -16,7 +16,7 @@
 #include "ppu/bullet/surface_body.h"
 #include "ppu/contacts/attachment_links.h"
 #include "ppu/contacts/attachments.h"
-#include "ppu/contacts/contact_stage.h"
+#include "ppu/contacts/contact_solver.h"
 #include "softcell/soft_bodies/attachment.h"
 
 namespace softcell::ppu {

@@ -40,7 +40,7 @@ const std::shared_ptr<const ContactModel>& SurfaceContacts::contact_model(
 void SurfaceContacts::adopt(std::unique_ptr<ContactModel> contact) { models_.adopt(std::move(contact)); }
 
 template <typename Is>
-bool SurfaceContacts::any_near(const BodyInStage& body, const Is& is) const {
+bool SurfaceContacts::any_near(const BodyInSubstep& body, const Is& is) const {
   return std::any_of(body.obstacles.begin(), body.obstacles.end(), [&](std::uint32_t obstacle) {
     return is(*obstacles_.objects()[obstacles_.obstacles()[obstacle].rigid]);
   });
@@ -53,7 +53,7 @@ void SurfaceContacts::wake_if_disturbed(std::span<SurfaceBody* const> bodies, st
     sleeper.see(object.getWorldArrayIndex());
     return moves(object);
   };
-  if (any_near(in_stage_[body], moves_or_is_seen)) {
+  if (any_near(in_substep_[body], moves_or_is_seen)) {
     sleeper.rouse();
   } else if (sleeper.notices_a_change()) {
     sleeper.rouse();
@@ -76,8 +76,8 @@ void SurfaceContacts::wake_those_on_shaken(std::span<SurfaceBody* const> bodies)
 }
 
 /// For a body that has just fallen asleep. The program's callbacks may have removed some of these objects in this substep.
-void SurfaceContacts::see_what_is_near(SurfaceBody& sleeper, const BodyInStage& in_stage) const {
-  for (const std::uint32_t obstacle : in_stage.obstacles) {
+void SurfaceContacts::see_what_is_near(SurfaceBody& sleeper, const BodyInSubstep& in_substep) const {
+  for (const std::uint32_t obstacle : in_substep.obstacles) {
     const btCollisionObject* const object = obstacles_.objects()[obstacles_.obstacles()[obstacle].rigid];
     const int place = SeenObject::place_of(world_, object);
     if (place >= 0) sleeper.see(place);
@@ -88,43 +88,43 @@ void SurfaceContacts::step(std::span<SurfaceBody* const> bodies, float step) {
   models_.forget_unused();
   obstacles_.begin(world_, step);
   if (!attachments_.empty()) attachments_.begin();
-  in_stage_.resize(bodies.size());
+  in_substep_.resize(bodies.size());
   softs_.clear();
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    BodyInStage& in_stage = in_stage_[i];
+    BodyInSubstep& in_substep = in_substep_[i];
     const SoftBody<3>& soft = bodies[i]->soft();
     softs_.push_back(&soft);
-    in_stage = {.model = &bodies[i]->contact(),
-                .positions = soft.positions(),
-                .velocities = soft.velocities(),
-                .friction = soft.settings().friction,
-                .restitution = soft.settings().restitution,
-                .box = box_of_step(soft.positions(), soft.velocities(), step),
-                .obstacles = std::move(in_stage.obstacles),
-                .sides = &bodies[i]->sides()};
-    in_stage.obstacles.clear();
-    obstacles_.add_near(in_stage.box, bodies[i]->filter().group, bodies[i]->filter().mask,
-                        in_stage.obstacles);
-    if (!attachments_.empty()) attachments_.part(*bodies[i], obstacles_, in_stage.obstacles);
+    in_substep = {.model = &bodies[i]->contact(),
+                  .positions = soft.positions(),
+                  .velocities = soft.velocities(),
+                  .friction = soft.settings().friction,
+                  .restitution = soft.settings().restitution,
+                  .box = box_of_step(soft.positions(), soft.velocities(), step),
+                  .obstacles = std::move(in_substep.obstacles),
+                  .sides = &bodies[i]->sides()};
+    in_substep.obstacles.clear();
+    obstacles_.add_near(in_substep.box, bodies[i]->filter().group, bodies[i]->filter().mask,
+                        in_substep.obstacles);
+    if (!attachments_.empty()) attachments_.part(*bodies[i], obstacles_, in_substep.obstacles);
     if (bodies[i]->soft().asleep()) wake_if_disturbed(bodies, i);
-    in_stage.filter = bodies[i]->filter();
+    in_substep.filter = bodies[i]->filter();
   }
   wake_those_on_shaken(bodies);
   wake_those_in_the_way(bodies);
-  stage_.settings.bounces = {world_.getSolverInfo().m_restitutionVelocityThreshold,
-                             to_eigen(world_.getGravity())};
+  solver_.settings.bounces = {world_.getSolverInfo().m_restitutionVelocityThreshold,
+                              to_eigen(world_.getGravity())};
   in_step_.clear();
   if (!attachments_.empty()) attachments_.fill(in_step_, bodies, obstacles_, step);
   const auto is_attached = [&](const btCollisionObject& object) {
     return !attachments_.empty() && attachments_.are_to(object);
   };
   const RigidLinks links = links_.find(world_, obstacles_, is_attached, step);
-  stage_.step(in_stage_, obstacles_.obstacles(), obstacles_.rigids(), links, step);
+  solver_.step(in_substep_, obstacles_.obstacles(), obstacles_.rigids(), links, step);
   move(bodies, step);
-  stage_.find_islands(islands_);
+  solver_.find_islands(islands_);
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     bodies[i]->set_island(islands_.find(static_cast<std::uint32_t>(i)));
-    bodies[i]->set_holds_a_moving_body(any_near(in_stage_[i], [&](const btCollisionObject& object) {
+    bodies[i]->set_holds_a_moving_body(any_near(in_substep_[i], [&](const btCollisionObject& object) {
       return is_awake(object) && !attachments_.joins(*bodies[i], object);
     }));
   }
@@ -147,7 +147,7 @@ void SurfaceContacts::find_at_rest(std::span<SurfaceBody* const> bodies) {
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     const bool is_restless = !bodies[i]->soft().asleep() && !bodies[i]->is_still();
     all_at_rest = all_at_rest && !is_restless;
-    for (const std::uint32_t obstacle : in_stage_[i].obstacles) {
+    for (const std::uint32_t obstacle : in_substep_[i].obstacles) {
       char& rigid = near_rigids_[obstacles_.obstacles()[obstacle].rigid];
       rigid = std::max(rigid, static_cast<char>(is_restless ? kDisturbed : kAtRest));
     }
@@ -159,16 +159,16 @@ void SurfaceContacts::find_at_rest(std::span<SurfaceBody* const> bodies) {
 
 void SurfaceContacts::move(std::span<SurfaceBody* const> bodies, float step) {
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    if (in_stage_[i].asleep) continue;
+    if (in_substep_[i].asleep) continue;
     SoftBody<3>& soft = bodies[i]->soft();
-    const auto velocities = stage_.velocities(i), pushes = stage_.pushes(i);
+    const auto velocities = solver_.velocities(i), pushes = solver_.pushes(i);
     MeanSpeed real;
     for (std::size_t p = 0; p < velocities.size(); ++p) {
       const Eigen::Vector3f velocity = velocities[p] + pushes[p];
       soft.set_particle(p, soft.position(p) + step * velocity, velocities[p]);
-      if (stage_.is_crushed(i)) real.add(soft.model().masses()[p], velocity);
+      if (solver_.is_crushed(i)) real.add(soft.model().masses()[p], velocity);
     }
-    bodies[i]->set_real_speed(stage_.is_crushed(i) ? std::optional(real.value()) : std::nullopt);
+    bodies[i]->set_real_speed(solver_.is_crushed(i) ? std::optional(real.value()) : std::nullopt);
   }
 }
 
@@ -181,9 +181,10 @@ void SurfaceContacts::wake_those_in_the_way(std::span<SurfaceBody* const> bodies
       if (!sleeps(bodies[i]) && bodies[i]->moves()) moving_.push_back(i);
   }
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    BodyInStage& sleeper = in_stage_[i];
+    BodyInSubstep& sleeper = in_substep_[i];
     const auto is_in_the_way_of = [&](std::uint32_t other) {
-      return overlap(sleeper.box, in_stage_[other].box) && sleeper.filter.may_touch(in_stage_[other].filter);
+      return overlap(sleeper.box, in_substep_[other].box) &&
+             sleeper.filter.may_touch(in_substep_[other].filter);
     };
     if (sleeps(bodies[i]) && std::any_of(moving_.begin(), moving_.end(), is_in_the_way_of))
       bodies[i]->rouse();
@@ -204,8 +205,8 @@ void SurfaceContacts::let_sleep(std::span<SurfaceBody* const> bodies, const Slee
       body->fall_asleep_with_others();
   attachments_.let_sleep(sleep);
   // New sleepers see what is near before the program can change it. Bodies that were added in this substep come last and are awake.
-  for (std::size_t i = 0; i < std::min(bodies.size(), in_stage_.size()); ++i)
-    if (bodies[i]->soft().asleep() && !in_stage_[i].asleep) see_what_is_near(*bodies[i], in_stage_[i]);
+  for (std::size_t i = 0; i < std::min(bodies.size(), in_substep_.size()); ++i)
+    if (bodies[i]->soft().asleep() && !in_substep_[i].asleep) see_what_is_near(*bodies[i], in_substep_[i]);
 }
 
 SurfaceContacts::Touch& SurfaceContacts::touch_of(const SurfaceBody& body, TouchedKind kind,
@@ -220,7 +221,7 @@ SurfaceContacts::Touch& SurfaceContacts::touch_of(const SurfaceBody& body, Touch
 
 void SurfaceContacts::note_touches(std::span<SurfaceBody* const> bodies) {
   pressing_.clear();
-  stage_.append_contacts(pressing_);
+  solver_.append_contacts(pressing_);
   for (const PressingContact& contact : pressing_) {
     const SurfaceBody &body = *bodies[contact.a], &other = *bodies[contact.b];
     Touch& touch = contact.with_rigid
@@ -252,7 +253,7 @@ void SurfaceContacts::note_triggers(std::span<SurfaceBody* const> bodies, float 
 
 void SurfaceContacts::append_contacts(std::vector<Contact>& contacts) const {
   std::vector<PressingContact> pressing;
-  stage_.append_contacts(pressing);
+  solver_.append_contacts(pressing);
   for (const PressingContact& contact : pressing) {
     Contact& appended = contacts.emplace_back();
     appended.position = contact.point;
@@ -273,7 +274,7 @@ void SurfaceContacts::watch(bool events) {
 
 void SurfaceContacts::forget(const SoftBody<3>& body) {
   touches_.forget(body);
-  stage_.forget_who_presses();
+  solver_.forget_who_presses();
 }
 
 }  // namespace softcell::ppu

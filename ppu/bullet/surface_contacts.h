@@ -12,7 +12,7 @@
 #include "ppu/bullet/bullet_obstacles.h"
 #include "ppu/bullet/surface_attachments.h"
 #include "ppu/bullet/surface_body.h"
-#include "ppu/contacts/contact_stage.h"
+#include "ppu/contacts/contact_solver.h"
 #include "ppu/contacts/touch_log.h"
 #include "ppu/numbers/disjoint_sets.h"
 #include "ppu/surfaces/cell_finder.h"
@@ -26,8 +26,8 @@ class SurfaceContacts {
   /// @param worker  finds and solves contacts; null: the thread that steps the world does it
   SurfaceContacts(btDiscreteDynamicsWorld& world, std::shared_ptr<ContactWorker> worker)
       : world_(world), worker_(std::move(worker)) {
-    stage_.worker = worker_.get();
-    stage_.attachments = &in_step_;
+    solver_.worker = worker_.get();
+    solver_.attachments = &in_step_;
   }
 
   /// The data that all bodies of a model share, made at the first call.
@@ -69,9 +69,9 @@ class SurfaceContacts {
   void find_at_rest(std::span<SurfaceBody* const> bodies);
   void wake_if_disturbed(std::span<SurfaceBody* const> bodies, std::size_t body);
   void wake_those_on_shaken(std::span<SurfaceBody* const> bodies);
-  void see_what_is_near(SurfaceBody& sleeper, const BodyInStage& in_stage) const;
+  void see_what_is_near(SurfaceBody& sleeper, const BodyInSubstep& in_substep) const;
   template <typename Is>
-  bool any_near(const BodyInStage& body, const Is& is) const;
+  bool any_near(const BodyInSubstep& body, const Is& is) const;
   Touch& touch_of(const SurfaceBody& body, TouchedKind kind, const btCollisionObject& object);
   void note_touches(std::span<SurfaceBody* const> bodies);
   void note_triggers(std::span<SurfaceBody* const> bodies, float step);
@@ -87,8 +87,8 @@ class SurfaceContacts {
   Attachments<3> in_step_;
   std::vector<char> near_rigids_;  // for each rigid body: which kind of soft ones are near
   std::vector<bool> at_rest_;      // for each rigid body
-  ContactStage stage_;
-  std::vector<BodyInStage> in_stage_;
+  ContactSolver solver_;
+  std::vector<BodyInSubstep> in_substep_;
   std::vector<const SoftBody<3>*> softs_;  // of the last substep
   std::vector<std::uint32_t> moving_;      // bodies that wake those in their way
   std::vector<std::size_t> shaken_;        // bodies that wake those on them, as their support has changed

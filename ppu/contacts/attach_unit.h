@@ -19,8 +19,8 @@ struct AttachUnit {
   std::vector<spu::AttachPoint> points;
   std::vector<spu::AttachRow> rows;
   std::vector<spu::AttachEntry> entries;
-  std::vector<const spu::SolveRigid*>
-      rigids;               ///< in the worker's memory (RigidSets): those that links refer to
+  /// In the worker's memory (RigidSets): those that links refer to.
+  std::vector<const spu::SolveRigid*> rigids;
   std::uint32_t slots = 0;  ///< number of slots in all runs
   bool pushes = false;      ///< at least one link pushes
 

@@ -160,7 +160,7 @@ class AttachmentLinks {
 
  private:
   Pointers links_;
-  std::uint32_t next_ = 0;
+  std::uint32_t next_ = 1;  // 0 names none
 };
 
 }  // namespace softcell::ppu

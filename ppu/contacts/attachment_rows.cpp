@@ -11,6 +11,7 @@
 
 #include "ppu/numbers/turning.h"
 #include "softcell/base/assert.h"
+#include "softcell/base/text.h"
 
 namespace softcell::ppu {
 namespace {
@@ -191,10 +192,10 @@ auto AttachmentRows<kDimension>::Side::append(const PatchParticles<kDimension>& 
   const Vector in_patches = spread.inverse_of_root * (point - spread.middle);
   const float reaches = in_patches.norm();
   if (reaches > kFarthest)
-    throw std::invalid_argument("a patch is held at a place " + std::to_string(reaches) +
-                                " times as far from its middle as the patch reaches; it may be 12 times as "
-                                "far: a larger patch can be "
-                                "held there");
+    throw std::invalid_argument("a patch is held at a place " + base::shortest(reaches) +
+                                " times as far from its middle as the patch reaches; it may be " +
+                                base::shortest(kFarthest) +
+                                " times as far: a larger patch can be held there");
   // S^-1 (p - c)
   const Vector pull = spread.inverse_of_root.transpose() * in_patches;
   const Place place{static_cast<std::uint32_t>(particle.size()),

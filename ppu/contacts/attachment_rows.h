@@ -151,8 +151,8 @@ class AttachmentRows {
   struct Side {
     std::vector<std::uint32_t> particle;
     std::vector<float> share;
-    std::vector<Vector> pushed =
-        {};  // m/s, in this substep: what these rows gave each particle, by number_of()
+    // In m/s, of this substep: what these rows gave each particle, by number_of().
+    std::vector<Vector> pushed = {};
 
     /// The number of an entry's particle without repetitions: places of several particles all have the same particles in the same order.
     static std::size_t number_of(const Place& place, std::uint32_t entry) {

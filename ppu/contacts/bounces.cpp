@@ -14,8 +14,8 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-constexpr int kBounceIterations =
-    40;  // over the contacts of one substep that bounce: few bodies bounce at a time
+// Iterations over the contacts of one substep that bounce: few bodies bounce at a time.
+constexpr int kBounceIterations = 40;
 // Two bodies rest on each other and do not hit if gravity makes them as fast within this many substeps.
 constexpr double kRestingSteps = 2;
 // In cells: when a body first touches something, contacts up to this gap count as touching, too.

@@ -90,8 +90,8 @@ class ContactModel {
   ContactSurface surface;
   std::vector<TouchPoint> touch_points;      ///< ascending by cell
   std::vector<std::uint32_t> first_of_cell;  ///< for each cell its first touch point; then the number of all
-  std::vector<std::uint32_t>
-      first_particle_of_cell;  ///< for each cell its first touch point that is a particle
+  /// For each cell its first touch point that is a particle.
+  std::vector<std::uint32_t> first_particle_of_cell;
   /// Of each cell: a place well inside of the body, near the cell (inner_places.h).
   std::vector<CellPlace> inner_places;
   std::vector<float> inverse_masses;       ///< 1/kg, of each particle

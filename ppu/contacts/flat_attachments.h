@@ -16,7 +16,7 @@ class FlatAttachments final : public AttachmentSolver<3> {
  public:
   /// Removes all attachments and keeps the allocated room.
   void clear();
-  /// The attachment's bodies and rigid body have their numbers in the stage.
+  /// The attachment's bodies and rigid body have their numbers of the substep.
   void add(const AttachmentInStep<2>& attachment);
 
   bool empty() const override { return in_plane_.empty(); }
@@ -38,7 +38,7 @@ class FlatAttachments final : public AttachmentSolver<3> {
   void take_back_spin() override;
 
  private:
-  /// A body of the stage in the plane: only its held particles are set.
+  /// A body of the substep in the plane: only its held particles are set.
   struct InPlane {
     std::vector<std::uint32_t> held;
     std::vector<Eigen::Vector2f> positions, velocities, pushes;
@@ -52,11 +52,11 @@ class FlatAttachments final : public AttachmentSolver<3> {
   void raise() const;
 
   Attachments<2> in_plane_;
-  std::vector<InPlane> planes_;  // for each body of the stage, or for the first ones
+  std::vector<InPlane> planes_;  // for each body of the substep, or for the first ones
   std::vector<AttachedBody<2>> bodies_;
   std::vector<AttachedRigid2d> rigids_;
   std::vector<HeldParticle<2>> held_;
-  std::span<const AttachedBody<3>> lifted_;  // of the stage
+  std::span<const AttachedBody<3>> lifted_;  // of the substep
   std::span<ContactRigid> lifted_rigids_;
 };
 

@@ -32,9 +32,9 @@ class KnownSides {
   /// One sheet of a part's triangles near the body.
   struct SheetSeen {
     std::uint32_t sheet;  ///< as `sheets` numbers them
-    std::uint32_t
-        nearest;  ///< a triangle of it by which it is found again in the next substep, when others may be near
-    int seen;     ///< as in side_of()
+    /// A triangle of it by which it is found again in the next substep, when others may be near.
+    std::uint32_t nearest;
+    int seen;  ///< as in side_of()
   };
   /// As side_of(), of one sheet. If it has been unclear from the beginning, the answer is side_of() of the part.
   /// @param triangles  of the part, near the body   @param sheets  of these

@@ -11,10 +11,10 @@ namespace {
 
 using Eigen::Vector3f;
 
-constexpr float kFast =
-    1;  // cells of the smaller ones, in a substep: slower bodies end near where they touch
-constexpr float kFastInBodies =
-    0.3f;  // of the thinner body's thickness in a substep: slower bodies end where they are pushed back
+// In cells of the smaller body, in a substep: slower bodies end near where they touch.
+constexpr float kFast = 1;
+// In the thinner body's thickness, in a substep: slower bodies end where they are pushed back.
+constexpr float kFastInBodies = 0.3f;
 constexpr float kSweepStep = 0.5f;  // cells
 constexpr int kMostMoments = 48;    // of a sweep
 

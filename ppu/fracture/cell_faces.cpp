@@ -103,8 +103,8 @@ std::vector<LatticePiece<kDimension>> split(const Lattice<kDimension>& lattice,
     piece.lattice.spacing = lattice.spacing;
     piece.lattice.origin = lattice.origin;
     // Particles are sorted by their numbers in the whole, copies by the cells that have them.
-    std::vector<std::pair<std::uint32_t, std::uint32_t>>
-        particles;  // number in the whole; the corner that represents the particle
+    // Number in the whole; the corner that represents the particle.
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> particles;
     for (const std::uint32_t c : cells)
       for (std::uint32_t k = 0; k < kCorners; ++k)
         if (const std::uint32_t corner = kCorners * c + k; corners.find(corner) == corner)

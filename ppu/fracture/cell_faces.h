@@ -26,8 +26,8 @@ template <int kDimension>
 struct LatticePiece {
   Lattice<kDimension> lattice;
   std::vector<std::uint32_t> cell_of;  ///< of each cell: its number in the whole
-  std::vector<std::uint32_t>
-      particle_of;  ///< of each particle: the particle of the whole that it is, or is a copy of
+  /// Of each particle: the particle of the whole that it is, or is a copy of.
+  std::vector<std::uint32_t> particle_of;
 };
 
 /// Splits a lattice along its broken faces into pieces. Some faces may have been broken before.

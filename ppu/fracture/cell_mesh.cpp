@@ -227,8 +227,8 @@ class CellMesh::Maker {
 
   /// Computes windings along lines of x, starting outside.
   void wind() {
-    std::map<std::pair<int, int>, std::map<int, int>>
-        lines;  // by y and z: the change of the winding beyond x
+    // Lines along x, by y and z: the change of the winding beyond x.
+    std::map<std::pair<int, int>, std::map<int, int>> lines;
     for (const auto& [key, crossings] : made_.crossings_) {
       if (key % 3 != 0) continue;
       const auto part = [corner = key / 3](int shift) {

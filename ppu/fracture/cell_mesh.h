@@ -82,8 +82,8 @@ class CellMesh {
   std::vector<Triangle> triangles_;            // sorted by cells
   std::vector<std::uint32_t> first_triangle_;  // of each cell
   std::vector<Segment> segments_;              // sorted by faces
-  std::unordered_map<std::uint64_t, std::vector<Crossing>>
-      crossings_;             // of each edge of a cell, by its corner and axis
+  // Of each edge of a cell, by its corner and axis.
+  std::unordered_map<std::uint64_t, std::vector<Crossing>> crossings_;
   std::vector<int> winding_;  // of each particle: how many times the mesh winds around it
 };
 

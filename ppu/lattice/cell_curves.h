@@ -57,8 +57,8 @@ class CellCurves final : public SkinMap {
   float distance(std::uint32_t cell, const Eigen::Vector2f& at) const;
 
   const Lattice<2>& lattice_;
-  std::array<std::vector<std::vector<Share>>, 2>
-      derivatives_;                                   // along x and y, for each particle, of a cell's edge
+  // Along x and y, for each particle, of a cell's edge.
+  std::array<std::vector<std::vector<Share>>, 2> derivatives_;
   std::vector<std::vector<std::uint32_t>> cells_of_;  // for each particle
   std::vector<std::uint32_t> near_;                   // cells of the current vertex
   std::vector<Pull2d> pulls_;                         // of the current vertex

@@ -67,8 +67,8 @@ MatchingPlan<Real, kDimension>::MatchingPlan(const Lattice<kDimension>& lattice,
   Real farthest = 0;
   for (std::size_t i = 0; i < masses.size(); ++i) {
     const double mass = static_cast<double>(masses[i]);
-    const double region_count =
-        sizes[sums_->region_of()[i]];  // membership is symmetric: |R_i| = |r| of r = i
+    // Membership is symmetric: |R_i| = |r| of r = i.
+    const double region_count = sizes[sums_->region_of()[i]];
     const Vector x0 = (rest(i) - centre).template cast<Real>();
     particles_.push_back({x0, static_cast<Real>(mass / region_count), static_cast<Real>(1 / region_count),
                           static_cast<Real>(mass)});

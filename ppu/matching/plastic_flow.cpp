@@ -121,8 +121,8 @@ PlasticFlow<kDimension>::PlasticFlow(std::shared_ptr<const RestLattice<kDimensio
 
 template <int kDimension>
 std::size_t PlasticFlow<kDimension>::cells_that_contacts_hold() const {
-  constexpr double kHeld =
-      0.5 - 1e-6;  // spacing^n: kLeastVolume of contacts/crushed_cells.h, less the rounding of floats
+  // In spacing^n: kLeastVolume of contacts/crushed_cells.h, less the rounding of floats.
+  constexpr double kHeld = 0.5 - 1e-6;
   std::size_t held = 0;
   for (std::size_t cell = 0; cell < lattice_->corners().size(); ++cell)
     if (!(volume_of<kDimension>(*lattice_, cell, rest_) >= kHeld)) ++held;

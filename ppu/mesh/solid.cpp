@@ -29,8 +29,8 @@ void Solid::add_closed_parts(const TriangleMesh& mesh) {
   constexpr double kMostOpen = 0.05;  // share of the surface
   const std::vector<std::uint32_t> number = number_positions(mesh);
   DisjointSets parts(number.size());
-  std::map<std::pair<std::uint32_t, std::uint32_t>, int>
-      balance;  // of edges, from the lower corner to the higher
+  // Of edges, from the lower corner to the higher.
+  std::map<std::pair<std::uint32_t, std::uint32_t>, int> balance;
   for (const auto& t : mesh.triangles) {
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t a = number[t[k]], b = number[t[(k + 1) % 3]];

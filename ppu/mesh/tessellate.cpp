@@ -84,8 +84,8 @@ class EdgeHalver {
 
   TriangleMesh& mesh_;
   double longest_;  // m^2
-  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t>
-      middles_;  // of edges, from the lower vertex
+  // Of edges, from the lower vertex.
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> middles_;
 };
 
 /// @return whether any edge was too long
@@ -120,7 +120,7 @@ bool halve_long_edges(TriangleMesh& mesh, float longest) {
 
 TriangleMesh tessellate(const TriangleMesh& mesh, float longest_edge) {
   if (!(longest_edge > 0) || !std::isfinite(longest_edge))
-    throw std::invalid_argument("a mesh is tessellated to edges of " + std::to_string(longest_edge) +
+    throw std::invalid_argument("a mesh is tessellated to edges of " + base::shortest(longest_edge) +
                                 " m; give a length above 0");
   validate(mesh);
   TriangleMesh finer = mesh;

@@ -124,8 +124,8 @@ class SpeContacts final : public ContactWorker {
   FindParts parts_;
   std::vector<spu::FindTask> tasks_;
   std::vector<Asked> asked_;  // for each pair
-  std::vector<std::uint32_t>
-      known_of_task_;  // index in pairs_.known() for each task; kWhole: none, as the task is a part's
+  // Index in pairs_.known() for each task; kWhole: none, as the task is a part's.
+  std::vector<std::uint32_t> known_of_task_;
   std::size_t tasks_of_job_ = 1, room_of_job_ = 0;  // for finding_
   std::vector<std::span<spu::SolveContact>> found_by_task_;
   std::vector<FoundContacts> found_;

@@ -68,8 +68,8 @@ bool SpeSkinner::begin_frame() {
     if (state_->bodies[b]->shared_model() != state_->models[b])
       throw std::runtime_error(
           "SpeSkinner: body " + std::to_string(b) + " of " + std::to_string(state_->bodies.size()) +
-          " has another model than when it was added, as it has broken, was cut or was assigned to: "
-          "call remove() and add() of it");
+          " has another model than when it was added: it has broken, was cut, or got a body of another "
+          "model; call remove() and add() for it");
     state_->positions[b] = state_->bodies[b]->padded_positions();
   }
   return state_->orchestrator.kick(state_->positions);

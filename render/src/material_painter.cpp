@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 
+#include "mesh_store.h"
 #include "shaders.h"
 #include "softcell/base/assert.h"
 
@@ -200,15 +201,14 @@ MaterialPainter::Program& MaterialPainter::program(const Material& material) {
   return *programs_[kind];
 }
 
-void MaterialPainter::use(const Material& material, std::span<const GlObject> textures,
-                          const Eigen::Matrix4f& pose, const Eigen::Matrix3f& normal_matrix, float opacity) {
+void MaterialPainter::use(const Material& material, const MeshStore& meshes, const Eigen::Matrix4f& pose,
+                          const Eigen::Matrix3f& normal_matrix, float opacity) {
   SC_ASSERT(opacity >= 0 && opacity <= 1, "an opacity of {}", opacity);
   const Program& with = program(material);
   const auto bind = [&](const std::optional<TextureId>& texture, GLint unit) {
     if (!texture) return;
-    SC_ASSERT(texture->value < textures.size(), "texture {} of {}", texture->value, textures.size());
     gl_.ActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
-    gl_.BindTexture(GL_TEXTURE_2D, textures[texture->value].name());
+    gl_.BindTexture(GL_TEXTURE_2D, meshes.texture(*texture).name());
   };
   bind(material.base_texture, kBaseUnit);
   bind(material.metallic_roughness_texture, kMetallicRoughnessUnit);

@@ -4,12 +4,13 @@
 #include <Eigen/Core>
 #include <array>
 #include <memory>
-#include <span>
 
 #include "gl_objects.h"
 #include "softcell/render/material.h"
 
 namespace softcell::render {
+
+class MeshStore;
 
 class MaterialPainter {
  public:
@@ -20,7 +21,7 @@ class MaterialPainter {
 
   /// Binds the program and the textures of a material. @pre the context is current; the textures exist
   /// @param opacity  0..1, of the whole mesh
-  void use(const Material& material, std::span<const GlObject> textures, const Eigen::Matrix4f& pose,
+  void use(const Material& material, const MeshStore& meshes, const Eigen::Matrix4f& pose,
            const Eigen::Matrix3f& normal_matrix, float opacity);
 
   /// Whether what is drawn covers pixels by its alpha.

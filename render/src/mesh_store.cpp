@@ -82,37 +82,24 @@ void MeshStore::add_levels(MeshBuffers& buffers, std::span<const Eigen::Vector3f
                  GL_STATIC_DRAW);
 }
 
-MeshId MeshStore::add(MeshBuffers buffers) {
-  if (!removed_.empty()) {
-    const std::uint32_t number = removed_.back();
-    removed_.pop_back();
-    skinned_[number].emplace(std::move(buffers));
-    return {number};
-  }
-  skinned_.emplace_back(std::move(buffers));
-  return {static_cast<std::uint32_t>(skinned_.size() - 1)};
-}
-
 void MeshStore::filled(MeshId id, std::size_t bytes) {
-  SC_ASSERT(id.value < skinned_.size() && skinned_[id.value], "mesh {} of {}", id, skinned_.size());
-  skinned_[id.value]->filled = true;
+  mesh_to_change(id).filled = true;
   uploaded_bytes_ += bytes;
 }
 
 const MeshBuffers& MeshStore::mesh(MeshId id) const {
-  if (id.value >= skinned_.size() || !skinned_[id.value])
-    throw std::invalid_argument("no mesh " + std::to_string(id.value));
-  return *skinned_[id.value];
+  if (const MeshBuffers* const found = skinned_.find(id.value)) return *found;
+  throw std::invalid_argument("no mesh " + std::to_string(id.value));
 }
 
 const MeshBuffers& MeshStore::mesh(StaticMeshId id) const {
-  if (id.value >= statics_.size()) throw std::invalid_argument("no static mesh " + std::to_string(id.value));
-  return statics_[id.value];
+  if (const MeshBuffers* const found = statics_.find(id.value)) return *found;
+  throw std::invalid_argument("no static mesh " + std::to_string(id.value));
 }
 
 const GlObject& MeshStore::texture(TextureId id) const {
-  if (id.value >= textures_.size()) throw std::invalid_argument("no texture " + std::to_string(id.value));
-  return textures_[id.value];
+  if (const GlObject* const found = textures_.find(id.value)) return *found;
+  throw std::invalid_argument("no texture " + std::to_string(id.value));
 }
 
 template <class Value>
@@ -140,14 +127,25 @@ template void MeshStore::set_attribute(const MeshBuffers&, std::optional<GlObjec
 
 MeshId MeshStore::add_mesh(std::span<const std::uint32_t> indices) {
   context_.make_current();
-  return add(make_skinned_mesh(indices));
+  return {skinned_.add(make_skinned_mesh(indices))};
 }
 
 void MeshStore::remove_mesh(MeshId id) {
   mesh(id);
   context_.make_current();
-  skinned_[id.value].reset();
-  removed_.push_back(id.value);
+  skinned_.remove(id.value);
+}
+
+void MeshStore::remove_static_mesh(StaticMeshId id) {
+  mesh(id);
+  context_.make_current();
+  statics_.remove(id.value);
+}
+
+void MeshStore::remove_texture(TextureId id) {
+  texture(id);
+  context_.make_current();
+  textures_.remove(id.value);
 }
 
 void MeshStore::update_mesh(MeshId id, std::span<const std::byte> vertices) {
@@ -182,7 +180,7 @@ MeshId MeshStore::add_cell_mesh(std::span<const std::uint32_t> indices, std::spa
   gl_.BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(bytes_of(vertices.size(), kSkinnedVertexBytes)),
                  nullptr, GL_STREAM_COPY);
   buffers.cells.emplace(gl_, vertices, corner_count);
-  return add(std::move(buffers));
+  return {skinned_.add(std::move(buffers))};
 }
 
 void MeshStore::update_corners(MeshId id, std::span<const std::byte> corners, const Eigen::Vector3f& origin) {
@@ -223,8 +221,7 @@ TextureId MeshStore::add_texture(const Image& picture, const TextureSettings& se
   gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, wrap_mode(settings.wrap_u));
   gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, wrap_mode(settings.wrap_v));
   gl_.ActiveTexture(GL_TEXTURE0);
-  textures_.push_back(std::move(texture));
-  return {static_cast<std::uint32_t>(textures_.size() - 1)};
+  return {textures_.add(std::move(texture))};
 }
 
 void MeshStore::set_rest_shape(MeshId id, std::span<const Eigen::Vector3f> positions,
@@ -236,7 +233,7 @@ void MeshStore::set_rest_shape(MeshId id, std::span<const Eigen::Vector3f> posit
                                 std::to_string(needed) + " vertices");
   }
   context_.make_current();
-  add_levels(*skinned_[id.value], positions, normals);
+  add_levels(mesh_to_change(id), positions, normals);
 }
 
 StaticMeshId MeshStore::add_static_mesh(std::span<const Eigen::Vector3f> positions,
@@ -274,8 +271,7 @@ StaticMeshId MeshStore::add_static_mesh(std::span<const Eigen::Vector3f> positio
     buffers.radius = 0.5f * box.diagonal().norm();
     add_levels(buffers, positions, normals);
   }
-  statics_.push_back(std::move(buffers));
-  return {static_cast<std::uint32_t>(statics_.size() - 1)};
+  return {statics_.add(std::move(buffers))};
 }
 
 }  // namespace softcell::render

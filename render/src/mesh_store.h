@@ -11,6 +11,7 @@
 
 #include "cell_skinner.h"
 #include "gl_objects.h"
+#include "numbered.h"
 #include "softcell/render/gl_context.h"
 #include "softcell/render/renderer.h"
 
@@ -72,6 +73,7 @@ class MeshStore {
   void update_corners(MeshId id, std::span<const std::byte> corners, const Eigen::Vector3f& origin);
   void set_rest_shape(MeshId id, std::span<const Eigen::Vector3f> positions,
                       std::span<const Eigen::Vector3f> normals);
+  void remove_static_mesh(StaticMeshId id);
   StaticMeshId add_static_mesh(std::span<const Eigen::Vector3f> positions,
                                std::span<const Eigen::Vector3f> normals, std::span<const Triangle> triangles);
 
@@ -90,12 +92,12 @@ class MeshStore {
 
   /// @param largest_side  that the context supports, pixels
   TextureId add_texture(const Image& picture, const TextureSettings& settings, int largest_side);
+  void remove_texture(TextureId id);
 
   /// @throws std::invalid_argument  no such mesh or texture
   const MeshBuffers& mesh(MeshId id) const;
   const MeshBuffers& mesh(StaticMeshId id) const;
   const GlObject& texture(TextureId id) const;
-  const std::vector<GlObject>& textures() const { return textures_; }
 
   std::uint64_t uploaded_bytes() const { return uploaded_bytes_; }
 
@@ -104,15 +106,14 @@ class MeshStore {
   MeshBuffers make_skinned_mesh(std::span<const std::uint32_t> indices) const;
   void add_levels(MeshBuffers& buffers, std::span<const Eigen::Vector3f> positions,
                   std::span<const Eigen::Vector3f> normals) const;
-  MeshId add(MeshBuffers buffers);
   void filled(MeshId id, std::size_t bytes);
   MeshBuffers& mesh_to_change(MeshId id) {
     mesh(id);
-    return *skinned_[id.value];
+    return *skinned_.find(id.value);
   }
   MeshBuffers& mesh_to_change(StaticMeshId id) {
     mesh(id);
-    return statics_[id.value];
+    return *statics_.find(id.value);
   }
   template <class Value>
   void set_attribute(const MeshBuffers& buffers, std::optional<GlObject>& buffer, GLuint attribute,
@@ -121,12 +122,10 @@ class MeshStore {
   GlContext& context_;
   const GladGLContext& gl_;
   bool with_levels_;
-  std::unique_ptr<CellSkinner> skinner_;             // made when it is first asked for
-  std::vector<std::optional<MeshBuffers>> skinned_;  // none: removed
-  std::vector<std::uint32_t> removed_;               // numbers in it
+  std::unique_ptr<CellSkinner> skinner_;  // made when it is first asked for
+  Numbered<MeshBuffers> skinned_, statics_;
+  Numbered<GlObject> textures_;
   std::uint64_t uploaded_bytes_ = 0;
-  std::vector<MeshBuffers> statics_;
-  std::vector<GlObject> textures_;
 };
 
 }  // namespace softcell::render

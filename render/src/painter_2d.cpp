@@ -111,26 +111,17 @@ Shape2dId Painter2d::add_shape(std::span<const std::array<std::uint32_t, 3>> tri
   gl_.BindBuffer(GL_ELEMENT_ARRAY_BUFFER, shape.indices.name());
   gl_.BufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(triangles.size_bytes()), triangles.data(),
                  GL_STATIC_DRAW);
-  if (removed_.empty()) {
-    shapes_.emplace_back(std::move(shape));
-    return {static_cast<std::uint32_t>(shapes_.size() - 1)};
-  }
-  const std::uint32_t place = removed_.back();
-  removed_.pop_back();
-  shapes_[place].emplace(std::move(shape));
-  return {place};
+  return {shapes_.add(std::move(shape))};
 }
 
 const Painter2d::Triangles& Painter2d::triangles_of(Shape2dId shape) const {
-  if (shape.value >= shapes_.size() || !shapes_[shape.value])
-    throw std::invalid_argument("no shape " + std::to_string(shape.value));
-  return *shapes_[shape.value];
+  if (const Triangles* const found = shapes_.find(shape.value)) return *found;
+  throw std::invalid_argument("no shape " + std::to_string(shape.value));
 }
 
 void Painter2d::remove_shape(Shape2dId shape) {
   triangles_of(shape);
-  shapes_[shape.value].reset();
-  removed_.push_back(shape.value);
+  shapes_.remove(shape.value);
 }
 
 void Painter2d::check(const Frame2d& frame) const {

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "gl_objects.h"
+#include "numbered.h"
 #include "softcell/render/frame_2d.h"
 
 namespace softcell::render {
@@ -90,8 +91,7 @@ class Painter2d {
   const GladGLContext& gl_;
   Program shape_, textured_shape_, mask_, textured_mask_, blur_, paper_, stroke_;
   GlObject shape_layout_, shape_vertices_, stroke_layout_, stroke_vertices_, stroke_indices_, empty_layout_;
-  std::vector<std::optional<Triangles>> shapes_;  // none: it was removed
-  std::vector<std::uint32_t> removed_;            // of these
+  Numbered<Triangles> shapes_;
 
   // The shadow: what casts it in half the picture's resolution, and blurred along x and y in a quarter.
   Target mask_target_, blurred_along_x_, blurred_;

@@ -351,7 +351,7 @@ void Renderer::State::draw_parts(const MeshBuffers& buffers, std::span<const Par
   const Eigen::Matrix3f normals = normal_matrix(pose);
   gl.BindVertexArray(buffers.layout.name());
   for (const PartDraw& part : parts) {
-    materials->use(part.material, meshes.textures(), pose, normals, opacity);
+    materials->use(part.material, meshes, pose, normals, opacity);
     cull_back_faces(!two_sided && !part.material.two_sided);
     const bool by_alpha = opacity >= 1 && MaterialPainter::covers_by_alpha(part.material);
     if (by_alpha) gl.Enable(GL_SAMPLE_ALPHA_TO_COVERAGE);  // without blending, in any order
@@ -523,6 +523,8 @@ void Renderer::set_vertex_colours(StaticMeshId id, std::span<const Eigen::Vector
 TextureId Renderer::add_texture(const Image& picture, const TextureSettings& settings) {
   return state_->meshes.add_texture(picture, settings, state_->targets->largest_side());
 }
+void Renderer::remove_texture(TextureId id) { state_->meshes.remove_texture(id); }
+void Renderer::remove_static_mesh(StaticMeshId id) { state_->meshes.remove_static_mesh(id); }
 void Renderer::set_rest_shape(MeshId id, std::span<const Eigen::Vector3f> positions,
                               std::span<const Eigen::Vector3f> normals) {
   state_->meshes.set_rest_shape(id, positions, normals);

@@ -466,7 +466,7 @@ TEST_P(FrameTimesOf2d, ContactsOfSurfacesAreNotCountedAsShapeMatching) {
     add(spheres, with_circles.step());
   }
   EXPECT_GT(surface.contacts_ms, 0);
-  EXPECT_EQ(surface.apply_ms, 0);
+  EXPECT_LT(surface.apply_ms, surface.contacts_ms) << "next to nothing is copied to Box2D";
   EXPECT_EQ(spheres.contacts_ms, 0) << "Box2D's";
   EXPECT_GT(spheres.apply_ms, 0);
 }

@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "ppu/bullet/processor_time.h"
+#include "ppu/bodies/processor_time.h"
 #include "scene_file/scene_library.h"
 #include "simulation_runs.h"
 #include "support/drawn_overlap.h"

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "ppu/bullet/processor_time.h"
+#include "ppu/bodies/processor_time.h"
 #include "ppu/reference/skin_scalar.h"
 #include "scene_file/scene_library.h"
 #include "simulation/simulation_3d.h"

@@ -28,6 +28,9 @@ expect("a library that is not installed" 1
 expect("a project without the assembler" 1
   "softcell_embed_spu_images\\(somebody\\): images are embedded by the assembler; enable it, as in project\\(\\.\\.\\. LANGUAGES CXX ASM\\)\\."
   ${configure} -DSOFTCELL_COMPONENTS=spu -DCMAKE_DISABLE_FIND_PACKAGE_box2d=OFF)
+expect("a component that is not built" 1
+  "softcell is a part of this project, built with SOFTCELL_COMPONENTS \"spu\": without box2d\\."
+  ${configure} -DSOFTCELL_COMPONENTS=spu -DWITH_ASSEMBLER=ON "-DFIND_COMPONENTS=COMPONENTS\;spu\;box2d")
 
 foreach(stack 0 abc 300000)
   expect("a stack of ${stack} bytes" 1 "softcell_add_spu_kernel\\(sloppy\\): STACK_BYTES is ${stack}; a whole number from 1 to 262144 was expected"
@@ -37,14 +40,14 @@ endforeach()
 
 # All libraries, and nothing else: no tests but the project's own, no programs but the project's own, and warnings stop nobody.
 expect("configuring all components" 0 "" ${configure} -DWITH_ASSEMBLER=ON
-  "-DSOFTCELL_COMPONENTS=spu\;libspe2\;soft_bodies\;mesh_import\;bullet\;box2d\;spe_bodies")
+  "-DSOFTCELL_COMPONENTS=spu\;libspe2\;soft_bodies\;mesh_import\;bullet\;box2d\;spe_bodies" "-DFIND_COMPONENTS=COMPONENTS\;spu\;bullet")
 expect("its tests" 0 "Test #1: spu_syntax\\.sloppy\\.sloppy .*Test #2: somebody Total Tests: 2 " ${CMAKE_CTEST_COMMAND} --test-dir ${build} -N)
 file(READ ${build}/compile_commands.json commands)
 if(NOT commands MATCHES "ppu/spe_bodies/" OR commands MATCHES "-Werror|${SOURCE}/(demos|tool|render|tests)/")
   message(FATAL_ERROR "softcell builds more than its libraries, or makes warnings errors:\n${commands}")
 endif()
 
-expect("configuring" 0 "" ${configure} -DSOFTCELL_COMPONENTS=spu)
+expect("configuring" 0 "" ${configure} -DSOFTCELL_COMPONENTS=spu "-DFIND_COMPONENTS=COMPONENTS\;spu\;OPTIONAL_COMPONENTS\;box2d")
 expect("building" 0 "unused" ${CMAKE_COMMAND} --build ${build} --parallel 2)
 expect("testing" 0 "100% tests passed" ${CMAKE_CTEST_COMMAND} --test-dir ${build} --output-on-failure)
 if(NOT EXISTS ${build}/somebody)

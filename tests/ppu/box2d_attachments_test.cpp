@@ -408,6 +408,8 @@ TEST_P(Box2dAttachments, SayWhatIsOutOfRange) {
   EXPECT_THROW(w.soft.attach(a, patch, {.kind = AttachmentKind::kRope}), std::invalid_argument);
   EXPECT_THROW(w.soft.detach(AttachmentId{7}), std::invalid_argument);
   const AttachmentId id = w.soft.attach(a, patch);
+  EXPECT_THROW(w.soft.detach(AttachmentId{}), std::invalid_argument) << "a default one names none";
+  EXPECT_FALSE(w.soft.attachment(AttachmentId{}));
   EXPECT_THROW(w.soft.move_attachment(id, {NAN, 0}), std::invalid_argument);
   EXPECT_THROW(w.soft.move_attachment(id, {0, 0}, 0, -1), std::invalid_argument);
 }

@@ -510,6 +510,25 @@ TEST(BulletSoftBodies, ASavedBodyIsRestoredAsAWhole) {
   EXPECT_LT(body.deformation(), 1e-3f);
 }
 
+/// A saved game may have been saved while bodies were in the air.
+TEST(BulletSoftBodies, ASleeperWhoseStateIsSetInTheAirFalls) {
+  for (const ContactMethod contacts : {ContactMethod::kSurface, ContactMethod::kSpheres}) {
+    BulletWorld bullet;
+    BulletSoftBodies soft(bullet.world(), contacts);
+    bullet.add_box({20, 1, 20}, 0, {0, -0.5f, 0}, 0.6f);
+    soft.let_sleep(SleepSettings{.speed = 0.5f, .seconds = 0.2f});
+    SoftBody<3>& body = soft.add(block_model({3, 3, 3}, stiff(0.2f)), {0, 0.35f, 0});
+    for (int i = 0; i < 240 && !body.asleep(); ++i) bullet.step(kFrame, 2);
+    ASSERT_TRUE(body.asleep());
+    const float lain = body.bounds().low.y();
+    std::vector<Vector3f> raised(body.positions().begin(), body.positions().end());
+    for (Vector3f& position : raised) position.y() += 0.5f;
+    body.set_state(raised, std::vector<Vector3f>(raised.size(), Vector3f::Zero()));
+    for (int i = 0; i < 120; ++i) bullet.step(kFrame, 2);
+    EXPECT_NEAR(body.bounds().low.y(), lain, 0.02f);
+  }
+}
+
 TEST(BulletSoftBodies, WhatSleptOnABodyFallsWhenThatGoesAway) {
   const auto fine = block_model({3, 3, 3}, stiff(0.2f)), coarse = block_model({3, 3, 3}, stiff(0.5f));
   for (const auto& below : {fine, coarse}) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -147,6 +148,23 @@ SoftBody<3> moving_body() {
   return body;
 }
 
+TEST(SoftBodyModel, SaysWhereAStrengthIsRefusedAndInAllItsDigits) {
+  const auto refusal_of = [](float strength) -> std::string {
+    try {
+      make_soft_body_model(make_box({1, 0.5f, 0.5f}, 1), {.cell_size = 0.5f},
+                           [=](const Vector3f& at) { return at.x() > 0 ? strength : 1; });
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  EXPECT_EQ(refusal_of(0), "accepted");
+  EXPECT_EQ(refusal_of(-1e-9f),
+            "the strength of a soft body at (0.25, 0, 0) is -1e-09; it must be 0 or above, and finite");
+  EXPECT_EQ(refusal_of(NAN),
+            "the strength of a soft body at (0.25, 0, 0) is nan; it must be 0 or above, and finite");
+}
+
 TEST(SoftBody, BeginsAtRestInItsPlace) {
   const SoftBody<3> body(block_model({2, 2, 2}, rubber()), {1, 2, 3});
   EXPECT_TRUE(body.bounds().low.isApprox(Vector3f(0.8f, 2, 2.8f)));
@@ -253,6 +271,39 @@ TEST(SoftBody, ACopyIsASavedState) {
   const auto first = run();
   body = saved;
   EXPECT_EQ(run(), first);
+}
+
+/// As a program does that saves bodies in a file.
+TEST(SoftBody, ASavedStateIsSetInAnotherBody) {
+  SoftBody<3> body(block_model({2, 2, 2}, rubber()), {0, 1, 0});
+  body.add_angular_velocity({1, 2, 3});
+  for (int i = 0; i < 3; ++i) body.pull(1.0f / 120);
+  const std::vector<Vector3f> positions(body.positions().begin(), body.positions().end());
+  const std::vector<Vector3f> velocities(body.velocities().begin(), body.velocities().end());
+  SoftBody<3> other(body.shared_model());
+  const std::uint32_t revision = other.revision(), resets = other.resets();
+  other.set_state(positions, velocities);
+  EXPECT_NE(other.revision(), revision) << "couplings notice it";
+  EXPECT_NE(other.resets(), resets);
+  EXPECT_EQ(state_hash(other), state_hash(body));
+  for (std::size_t i = 0; i < positions.size(); ++i)
+    EXPECT_EQ(other.padded_positions()[i].head<3>(), positions[i]);
+
+  const auto refusal_of = [&](std::span<const Vector3f> x, std::span<const Vector3f> v) -> std::string {
+    try {
+      other.set_state(x, v);
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  EXPECT_EQ(refusal_of(positions, std::span(velocities).first(1)),
+            "a soft body of 27 particles was given 27 positions and 1 velocity");
+  std::vector<Vector3f> bad = velocities;
+  bad[26].y() = NAN;
+  EXPECT_EQ(refusal_of(positions, bad),
+            "a soft body was given a state whose particle 26 of 27 is not finite");
+  EXPECT_EQ(state_hash(other), state_hash(body)) << "nothing has changed";
 }
 
 TEST(StateHash, SeesEveryParticleVelocityAndTheOrderOfBodies) {

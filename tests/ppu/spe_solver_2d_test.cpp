@@ -107,7 +107,7 @@ TEST(SpeSolver2d, GoesWithTheSolverOfThePpu) {
         ASSERT_LT((here.soft[b].positions()[i] - there.soft[b].positions()[i]).norm(), 1e-4f)
             << "after " << steps << ", body " << b << ", particle " << i;
   }
-  EXPECT_GT(there.soft.time_waited().count(), 0);
+  EXPECT_GT(there.soft.times().wait.count(), 0);
 }
 
 TEST(SpeSolver2d, GivesTheSameBitsForAnyNumberOfSpesAndEverySchedule) {

@@ -155,6 +155,12 @@ TEST(Tessellate, RefusesWhatCannotBe) {
   const TriangleMesh mesh = make_box({2, 0.2f, 0.3f}, 10);
   for (const float longest : {0.0f, -1.0f, std::nanf(""), std::numeric_limits<float>::infinity()})
     EXPECT_THROW(tessellate(mesh, longest), std::invalid_argument);
+  try {
+    tessellate(mesh, -1e-9f);
+    ADD_FAILURE() << "it was tessellated";
+  } catch (const std::invalid_argument& e) {
+    EXPECT_STREQ(e.what(), "a mesh is tessellated to edges of -1e-09 m; give a length above 0");
+  }
   EXPECT_THROW(tessellate(mesh, 1e-6f), std::invalid_argument) << "more triangles than anybody needs";
   TriangleMesh wrong = mesh;
   wrong.normals.pop_back();

@@ -403,6 +403,39 @@ TEST_F(RendererTest, RefusesTexturesThatDoNotFit) {
   EXPECT_THROW(renderer_.render(frame), std::invalid_argument);  // no coordinates
 }
 
+/// A game adds and removes them with each level.
+TEST_F(RendererTest, TexturesAndStaticMeshesAreRemovedAndTheirHandlesGivenAgain) {
+  SkinnedDraw item = add(ground_triangle());
+  const std::vector<Eigen::Vector2f> coordinates{{0, 0}, {0, 1}, {1, 0}};
+  renderer_.set_texture_coordinates(item.mesh, coordinates);
+  item.colour = {1, 1, 1};
+  item.texture = renderer_.add_texture(three_colours());
+  FrameDescription frame = view_from_above();
+  frame.skinned = std::span(&item, 1);
+  const Image first = draw(frame);
+  renderer_.remove_texture(*item.texture);
+  EXPECT_THROW(renderer_.render(frame), std::invalid_argument);
+  EXPECT_THROW(renderer_.remove_texture(*item.texture), std::invalid_argument);
+  Image white(8, 8);
+  std::ranges::fill(white.rgba, std::uint8_t{255});
+  const TextureId next = renderer_.add_texture(white);
+  EXPECT_EQ(next.value, item.texture->value);
+  EXPECT_NE(draw(frame), first) << "it shows the new picture";
+  item.texture = renderer_.add_texture(three_colours());
+  EXPECT_NE(item.texture->value, next.value);
+  EXPECT_EQ(draw(frame), first);
+
+  StaticDraw box{.mesh = test::add_unit_box(renderer_)};
+  frame.skinned = {};
+  frame.statics = std::span(&box, 1);
+  const Image with_box = draw(frame);
+  renderer_.remove_static_mesh(box.mesh);
+  EXPECT_THROW(renderer_.render(frame), std::invalid_argument);
+  EXPECT_THROW(renderer_.remove_static_mesh(box.mesh), std::invalid_argument);
+  EXPECT_EQ(test::add_unit_box(renderer_).value, box.mesh.value);
+  EXPECT_EQ(draw(frame), with_box);
+}
+
 TEST_F(RendererTest, DrawsTheSameFrameInTheSameBits) {
   const test::TestScene scene(renderer_, 1);
   const Image first = draw(scene.frame());

@@ -111,10 +111,10 @@ struct Scene2d {
   float friction = 0.6f;
   float restitution = 0;  ///< 0..1, of rigid bodies
   int substeps = 2;       ///< of a frame of 1/60 s
-  ppu::ContactMethod contacts =
-      ppu::ContactMethod::kSurface;  ///< the user may choose another; kSpheres: circles
-  bool sleep = false;                ///< bodies that have come to rest fall asleep
-  int frames = 300;                  ///< how long the scene is worth watching without a user
+  /// The user may choose another; kSpheres: circles.
+  ppu::ContactMethod contacts = ppu::ContactMethod::kSurface;
+  bool sleep = false;  ///< bodies that have come to rest fall asleep
+  int frames = 300;    ///< how long the scene is worth watching without a user
   Camera2d camera;
   ScriptedInput<2> script;
   std::vector<ScriptedCut<2>> cuts;

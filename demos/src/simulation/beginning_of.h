@@ -48,11 +48,8 @@ void put(ppu::SoftBody<Dimension>& body, const typename Beginning<Dimension>::So
   if (state.positions.size() != body.positions().size())
     throw std::runtime_error(fmt::format("soft body '{}' has {} particles, and its saved state has {}", name,
                                          body.positions().size(), state.positions.size()));
-  ppu::SoftBody<Dimension> moved = body;
-  for (std::size_t i = 0; i < state.positions.size(); ++i)
-    moved.set_particle(i, state.positions[i], state.velocities[i]);
-  if (!state.rest.empty()) moved.set_rest_positions(state.rest);
-  body = moved;
+  if (!state.rest.empty()) body.set_rest_positions(state.rest);
+  body.set_state(state.positions, state.velocities);
 }
 
 /// The same for all soft bodies of a scene, except those added at this moment: they stay where they are placed.

@@ -103,8 +103,8 @@ class PatchGrip {
   // themselves. With a rigid share of 0.5, cells of three of them turn.
   static constexpr double kLeastRigidShare = 0.85;
   static constexpr double kMostPullOut = 0.2;  // of the patch's radius: at this distance the rigid share is 1
-  static constexpr double kMostKick =
-      0.03;  // of the patch's radius: how far an impulse may move the patch against the body in a substep
+  // Of the patch's radius: how far an impulse may move the patch against the body in a substep.
+  static constexpr double kMostKick = 0.03;
 
   ppu::SoftBody<Dimension>& body_;
   HandPatch<Dimension> patch_;

@@ -134,6 +134,17 @@ struct World {
       if (body->GetType() == b2_dynamicBody) body->SetAwake(true);
   }
 
+  /// @param substep  seconds   @return the elapsed time in Box2D
+  std::chrono::nanoseconds step(float substep) {
+    constexpr int kVelocityIterations = 8, kPositionIterations = 3;
+    soft_bodies.begin_step(substep);
+    const auto begin = std::chrono::steady_clock::now();
+    world.Step(substep, kVelocityIterations, kPositionIterations);
+    const auto took = std::chrono::steady_clock::now() - begin;
+    soft_bodies.end_step(substep);
+    return took;
+  }
+
   void attach(const Scene2d& scene) {
     for (const AttachmentPlacement<2>& placement : scene.attachments) {
       const ppu::SoftBody<2>& body = soft_bodies[placement.body];
@@ -315,15 +326,16 @@ struct Simulation2d::State {
     held.forget(&bodies[body]);
   }
 
-  /// Elapsed time of this thread in the coupling to Box2D, and in the solver as a part of that, from some moment on.
-  struct Elapsed {
-    std::chrono::nanoseconds coupling, solve, wait;  // coupling: all of it
+  /// Times of this thread from some moment on: processor time in the coupling to Box2D, elapsed time in the solver.
+  struct Spent {
+    ppu::SoftBodyTimes coupling;
+    std::chrono::nanoseconds solve, wait;
   };
-  Elapsed elapsed() const {
+  Spent spent() const {
     const std::chrono::nanoseconds handing_over = solver->time_handing_over(),
                                    rest = solver->time_finishing();
     // Without SPEs the solver works when it finishes.
-    return {.coupling = world->soft_bodies.time_spent(),
+    return {.coupling = world->soft_bodies.times(),
             .solve = spes ? handing_over : handing_over + rest,
             .wait = spes ? rest : std::chrono::nanoseconds{0}};
   }
@@ -358,7 +370,6 @@ Simulation2d::~Simulation2d() = default;
 
 FrameTimes Simulation2d::step(std::span<const InputEvent<2>> events) {
   State& s = *state_;
-  const auto begin = std::chrono::steady_clock::now();
   const std::int64_t at_frame = s.frame++;
   const auto scripted = s.script.events_at(at_frame);
   s.events.assign(scripted.begin(), scripted.end());
@@ -370,31 +381,32 @@ FrameTimes Simulation2d::step(std::span<const InputEvent<2>> events) {
 
   World& world = *s.world;
   const FrameOnPs3 on_ps3(s.timing);
-  const State::Elapsed before = s.elapsed();
+  const State::Spent before = s.spent();
+  std::chrono::nanoseconds in_box2d{0};
   world.set_gravity(to_box2d(s.controls.gravity()));
   s.held.begin_frame(static_cast<float>(substeps) * s.substep());
   for (int i = 0; i < substeps; ++i) {
     s.controls.hands().pull(s.bodies);
     s.held.pull(i, substeps, s.controls.gravity(), s.substep());
-    world.soft_bodies.step(s.substep());
+    in_box2d += world.step(s.substep());
     s.note_broken();
   }
 
   // The SPEs work on the next frame's first step while this frame is drawn.
   world.soft_bodies.begin_ahead(s.substep());
 
-  using Milliseconds = std::chrono::duration<double, std::milli>;
-  const double all = Milliseconds(std::chrono::steady_clock::now() - begin).count();
-  const State::Elapsed after = s.elapsed();
-  const double coupling = Milliseconds(after.coupling - before.coupling).count();
+  const State::Spent after = s.spent();
+  const auto milliseconds = [](std::chrono::nanoseconds from, std::chrono::nanoseconds to) {
+    return std::chrono::duration<double, std::milli>(to - from).count();
+  };
   FrameTimes times;
-  times.physics_ms = all - coupling;
-  times.solve_ms = Milliseconds(after.solve - before.solve).count();
-  times.solver_wait_ms = Milliseconds(after.wait - before.wait).count();
-  // The coupling does not measure its parts. With surfaces it copies next to nothing to Box2D; with circles Box2D does the contacts.
-  (s.contacts == ppu::ContactMethod::kSurface ? times.contacts_ms : times.apply_ms) =
-      std::max(coupling - times.solve_ms - times.solver_wait_ms, 0.0);
-  times.ppu_ms = times.solve_ms + times.apply_ms + times.contacts_ms;
+  times.physics_ms = milliseconds({}, in_box2d);
+  times.gather_ms = milliseconds(before.coupling.gather, after.coupling.gather);
+  times.solve_ms = milliseconds(before.solve, after.solve);
+  times.apply_ms = milliseconds(before.coupling.apply, after.coupling.apply);
+  times.contacts_ms = milliseconds(before.coupling.contacts, after.coupling.contacts);
+  times.solver_wait_ms = milliseconds(before.wait, after.wait);
+  times.ppu_ms = times.gather_ms + times.solve_ms + times.apply_ms + times.contacts_ms;
   times.ps3_ms = on_ps3.milliseconds();
   return times;
 }

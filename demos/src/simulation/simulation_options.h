@@ -62,7 +62,7 @@ struct SimulationOptions {
 struct FrameTimes {
   double physics_ms = 0;      ///< in Bullet or Box2D
   double ppu_ms = 0;          ///< in softcell, processor time of the thread: the sum of the next five
-  double gather_ms = 0;       ///< copying particles from the engine; in 2D part of apply_ms
+  double gather_ms = 0;       ///< copying particles from the engine
   double solve_ms = 0;        ///< handing work to the solver and taking it back, or doing it
   double apply_ms = 0;        ///< copying the new velocities to the engine
   double contacts_ms = 0;     ///< of surfaces; contacts of spheres are Bullet's

@@ -1,6 +1,6 @@
 #include "snapshots_3d.h"
 
-#include "ppu/bullet/processor_time.h"
+#include "ppu/bodies/processor_time.h"
 #include "softcell/base/assert.h"
 
 namespace softcell::demos {

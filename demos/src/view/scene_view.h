@@ -58,8 +58,8 @@ class SceneView {
   std::vector<SolidBox> boxes_;  // of all bodies
 
   MeshLooks looks_;
-  std::vector<std::vector<render::PartDraw>>
-      parts_;  // of static draws with materials of their own; never changes
+  // Parts of static draws with materials of their own; never changes.
+  std::vector<std::vector<render::PartDraw>> parts_;
   std::vector<render::SkinnedDraw> skinned_;
   std::vector<std::vector<render::PartDraw>> skinned_parts_;  // likewise, of skinned_
   std::vector<render::StaticDraw> statics_;                   // boxes, obstacles, parts of rigid bodies

@@ -558,6 +558,30 @@ TEST_P(SolvedBy, ComplianceGives) {
   EXPECT_NEAR(before - middle_of(body, top).y(), 0.05f, 0.002f);
 }
 
+/// As docs/guide/soft-bodies.md has it: the place of a weld is the middle of its patch, which lies below the point that the ray meets.
+TEST_P(SolvedBy, AHandTakesABodyWhereARayMeetsItWithoutAJolt) {
+  AttachedWorld w(GetParam(), {0, 0, 0});
+  SoftBody<3>& body = w.add(block({0.4f, 0.4f, 0.4f}), settings_of(kCell, 0.5f, 0.5f), {0, 0, 0});
+  const auto hit = w.bodies.cast_ray({0.05f, 2, 0.03f}, {0.05f, -2, 0.03f});
+  ASSERT_TRUE(hit);
+  ASSERT_EQ(hit->body, &body);
+  const AttachmentId hand = w.bodies.attach(*hit->body, Patch<3>::of_surface(hit->hit.position, 1.5f * kCell),
+                                            {.compliance = 1e-4f});
+  const Vector3f offset = w.bodies.attachment_ends(hand)->patch - hit->hit.position;
+  EXPECT_LT(offset.y(), -0.1f * kCell);
+  const Vector3f before = body.centre_of_mass();
+  for (int i = 0; i < 60; ++i) {
+    w.bodies.move_attachment(hand, hit->hit.position + offset, Eigen::Quaternionf::Identity(), kStep);
+    w.run(1);
+    ASSERT_LT(w.bodies.attachment(hand)->force.norm(), 1e-2f) << i;
+  }
+  EXPECT_LT((body.centre_of_mass() - before).norm(), 1e-5f);
+  w.bodies.move_attachment(hand, hit->hit.position + offset + Vector3f(0, 1, 0),
+                           Eigen::Quaternionf::Identity(), 1);
+  w.run(240);
+  EXPECT_NEAR(body.centre_of_mass().y(), before.y() + 1, 0.01f) << "it comes along";
+}
+
 TEST_P(SolvedBy, FollowAPointThatTheProgramMoves) {
   AttachedWorld w(GetParam(), {0, 0, 0});
   SoftBody<3>& body = w.add(block({0.3f, 0.3f, 0.3f}), settings_of(kCell, 0.5f, 0.5f), {0, 0, 0});
@@ -719,12 +743,18 @@ TEST(Attachments, SayWhatIsOutOfRange) {
             "no surface of the soft body is within 0.5 m of the middle of a patch; the nearest is 2 m away");
   EXPECT_EQ(refusal([&] { w.bodies.attach(body, patch, body, patch); }),
             "a soft body cannot be attached to itself");
+  EXPECT_NE(refuse(patch, {.kind = AttachmentKind::kHinge, .point = Vector3f(0, 9, 0)})
+                .find("; it may be 12 times as far: a larger patch can be held there"),
+            std::string::npos);
   const AttachmentId weld = w.bodies.attach(body, patch);
   EXPECT_EQ(refusal([&] {
               w.bodies.move_attachment(weld, {0, 0, 0}, Eigen::Quaternionf::Identity(), -1);
             }),
             "an attachment is moved within -1 s; it must be 0 or above, and finite");
   EXPECT_EQ(refusal([&] { w.bodies.detach(AttachmentId{7}); }), "there is no attachment 7");
+  EXPECT_EQ(refusal([&] { w.bodies.detach(AttachmentId{}); }), "there is no attachment 0")
+      << "a default one names none";
+  EXPECT_FALSE(w.bodies.attachment(AttachmentId{}));
 
   BulletSoftBodies spheres(w.world, ContactMethod::kSpheres);
   SoftBody<3>& of_spheres =

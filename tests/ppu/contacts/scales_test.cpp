@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "contact_world.h"
-#include "ppu/bullet/processor_time.h"
+#include "ppu/bodies/processor_time.h"
 
 namespace softcell::ppu {
 namespace {

@@ -14,7 +14,7 @@
 #include "../soft_body_2d_scenes.h"
 #include "contact_world.h"
 #include "ppu/contacts/attach_units.h"
-#include "ppu/contacts/contact_stage.h"
+#include "ppu/contacts/contact_solver.h"
 #include "ppu/spe_bodies/spe_contacts.h"
 #include "softcell/ls_sim/timing.h"
 #include "softcell/spe_bodies/spe_runtime.h"

@@ -560,6 +560,32 @@ TEST_P(Box2dFracture, PiecesTouchWhatTheWholeMay) {
   EXPECT_LT(pieces[0]->centre_of_mass().y(), -2);
 }
 
+/// Each body has a group of collision of its own. A step cannot refuse to break a body.
+TEST(Box2dFractureOfCircles, ABodyStaysWholeWhileItsPiecesFindNoGroups) {
+  if (kSlowBuild) GTEST_SKIP() << "32,768 bodies take too long with sanitizers";
+  World2d w(0, ContactMethod::kSpheres);
+  SoftBody<2>& bar = w.soft.add(rectangle_model({10, 1}, brittle_2d(0.02f)), {0, 2});
+  const auto filler = rectangle_model({1, 1}, {.cell_size = 0.1f, .half_width = 1, .contacts = false});
+  constexpr std::size_t kMost = 32768;
+  while (w.soft.size() < kMost) w.soft.add(filler, {9, 9});
+  EXPECT_THROW(w.soft.add(filler, {9, 9}), std::runtime_error);
+  const Cut2d middle = Cut2d::line({0.01f, 2}, {1, 0});
+  EXPECT_THROW(w.soft.cut(bar, middle), std::runtime_error);
+  EXPECT_THROW(w.soft.begin_cut(bar, middle), std::runtime_error);
+  for (std::size_t i = 0; i < bar.model().particles(); ++i)
+    bar.add_particle_velocity(i, {bar.position(i).x() > 0 ? 6.0f : -6.0f, 0});
+  const auto step = [&] {
+    for (int i = 0; i < 3; ++i) w.soft.step(kStep2d);
+  };
+  EXPECT_NO_THROW(step());
+  EXPECT_EQ(w.soft.size(), kMost);
+  EXPECT_TRUE(w.soft.poll_broken().empty());
+  for (int i = 0; i < 20; ++i) w.soft.remove(w.soft[w.soft.size() - 1]);
+  step();
+  EXPECT_EQ(w.soft.poll_broken().size(), 1u);
+  EXPECT_GT(w.soft.size(), kMost - 20);
+}
+
 TEST_P(Box2dFracture, WhatIsRemovedIsNotNamed) {
   World2d w(0, GetParam());
   SoftBody<2>& bar = w.soft.add(rectangle_model({10, 1}, {.cell_size = 0.1f, .half_width = 1}), {0, 2});

@@ -11,7 +11,7 @@
 
 #include "../contacts/contact_world.h"
 #include "../soft_body_2d_scenes.h"
-#include "ppu/bullet/processor_time.h"
+#include "ppu/bodies/processor_time.h"
 #include "softcell/soft_bodies/fracture.h"
 #include "softcell/soft_bodies/shapes.h"
 #include "support/median.h"

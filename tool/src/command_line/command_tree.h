@@ -11,8 +11,8 @@ class App;
 namespace softcell::tool {
 
 struct CommandOption {
-  std::vector<std::string>
-      names;  ///< with their dashes, short ones first; a positional has one, without dashes
+  /// With their dashes, short ones first; a positional has one, without dashes.
+  std::vector<std::string> names;
   /// The placeholder of its value: FILE, DIR, SCENE, "eager|lazy|random:SEED"; empty: a flag.
   std::string value;
   std::string description;

@@ -7,8 +7,8 @@
 //     draw(man.positions());
 //
 // A soft body touches with its drawn edge: make_skin_2d() with the contact radius of its model, or the skin that add() gets. Box2D does not
-// know of the body, so Box2D's rays, overlap tests and contact listeners do not see it; use contacts(), poll_contact_events() and
-// cast_ray() instead. Box2D alone handles rigid bodies.
+// know of the body, so Box2D's rays, overlap tests and contact listeners do not see it; use append_contacts(),
+// poll_contact_events() and cast_ray() instead. Box2D alone handles rigid bodies.
 //
 //     step:  [solver: v] [contacts: v, x += h v, impulses on rigid bodies] [Box2D: rigid bodies]
 //
@@ -21,7 +21,6 @@
 #include <box2d/b2_world.h>
 
 #include <Eigen/Core>
-#include <chrono>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -32,6 +31,7 @@
 #include "softcell/soft_bodies/skin_2d.h"
 #include "softcell/soft_bodies/soft_body.h"
 #include "softcell/soft_bodies/soft_body_solver.h"
+#include "softcell/soft_bodies/soft_body_times.h"
 #include "softcell/soft_bodies/solver_factory.h"
 #include "softcell/soft_bodies/surface_query.h"
 
@@ -93,9 +93,9 @@ class Box2dSoftBodies {
   /// assigned to it, its attachments end.
   /// @param drawn  how bodies of the model are drawn: their outlines touch. Null: as make_skin_2d() draws them. Only the skin passed
   ///               with the first body of a model counts, and none with ContactMethod::kSpheres. It need not outlive the call
-  /// @throws std::invalid_argument  as validate() of the skin and the model's lattice, or the skin has no outlines
+  /// @throws std::invalid_argument  the model is null; as validate() of the skin and the model's lattice, or the skin has no outlines
   /// @throws std::runtime_error  with ContactMethod::kSpheres there would be more than 32,768 bodies
-  /// @pre the model is not null; the position is finite; the skin was made for the model's lattice
+  /// @pre the position is finite; the skin was made for the model's lattice
   SoftBody<2>& add(std::shared_ptr<const SoftBodyModel<2>> model, const Eigen::Vector2f& position,
                    const Skin2d* drawn = nullptr);
 
@@ -124,7 +124,8 @@ class Box2dSoftBodies {
   void detach(AttachmentId id);
   /// Moves the place in the world to which something is attached. The place moves evenly and arrives after `seconds` of simulated time, at
   /// the earliest at the end of the next step.
-  /// @param position  metres: the new point of a hinge or rope; of a weld, where the middle of the patch shall be
+  /// @param position  metres: the new point of a hinge or rope; of a weld, where the middle of the patch shall be. It lies within the
+  ///                  body: attachment_ends().patch says where it is now
   /// @param angle  radians, counter-clockwise: of the place, relative to its orientation when the patch was attached
   /// @throws std::invalid_argument  there is no such attachment, or it is to a body; a value is not finite; seconds below 0.
   void move_attachment(AttachmentId id, const Eigen::Vector2f& position, float angle = 0, float seconds = 0);
@@ -151,7 +152,7 @@ class Box2dSoftBodies {
   /// The bodies that have broken or were cut since the last call, in the order in which that happened, without those that were removed
   /// since. A body with a SoftBodySettings::fracture is tested at the end of each step in which it is awake. A body of up to 100 particles
   /// has its pieces at once. A larger one stays whole for 2 more steps, and one for each 1,000 particles, while another thread makes its
-  /// pieces.
+  /// pieces. With ContactMethod::kSpheres a body stays whole while its pieces would make more than 32,768 bodies.
   std::vector<BrokenSoftBody2d> poll_broken();
   /// Whether the body is still whole and will break into pieces. Assigning to the body, or resetting its shape, prevents that.
   /// @throws std::invalid_argument  the body is not one of these
@@ -224,14 +225,12 @@ class Box2dSoftBodies {
   std::optional<SoftRayHit2d> cast_ray(const Eigen::Vector2f& from, const Eigen::Vector2f& to,
                                        const CollisionFilter& filter = {}) const;
 
-  /// The contacts of the last step whose impulse is above 0. Empty with ContactMethod::kSpheres: these contacts are in Box2D.
-  std::vector<Contact2d> contacts() const;
+  /// Appends the contacts at which soft bodies that touch with their drawn edges pressed on something in the last step.
+  /// Contacts of circles are in Box2D's own list.
+  void append_contacts(std::vector<Contact2d>& contacts) const;
 
-  /// Elapsed time of this class's part of the steps so far.
-  std::chrono::nanoseconds time_spent() const;
-  /// The part of time_spent() in which the solver finished the step: the default solver works on this thread then, and a
-  /// solver on SPEs leaves it waiting.
-  std::chrono::nanoseconds time_waited() const;
+  SoftBodyTimes times()
+      const;  ///< the time that these bodies have taken inside step(), begin_step(), end_step() and begin_ahead()
 
  private:
   struct Impl;

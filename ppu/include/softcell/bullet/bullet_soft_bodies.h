@@ -30,7 +30,6 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
-#include <chrono>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -39,22 +38,11 @@
 #include "softcell/soft_bodies/contact.h"
 #include "softcell/soft_bodies/fracture.h"
 #include "softcell/soft_bodies/soft_body_solver.h"
+#include "softcell/soft_bodies/soft_body_times.h"
 #include "softcell/soft_bodies/solver_factory.h"
 #include "softcell/soft_bodies/surface_query.h"
 
 namespace softcell::ppu {
-
-/// The time that soft bodies have taken inside stepSimulation() since the construction, by parts.
-struct SoftBodyTimes {
-  std::chrono::nanoseconds gather{0};    ///< processor time: particles from Bullet, inner ones integrated
-  std::chrono::nanoseconds solve{0};     ///< processor time of the solver on this thread
-  std::chrono::nanoseconds apply{0};     ///< processor time: velocities to Bullet
-  std::chrono::nanoseconds contacts{0};  ///< processor time of contacts of surfaces
-  std::chrono::nanoseconds wait{0};      ///< elapsed time in which this thread waited for the solver
-
-  /// The processor time of all parts, on the calling thread.
-  std::chrono::nanoseconds processor() const { return gather + solve + apply + contacts; }
-};
 
 /// A contact event, with the object of Bullet that takes part.
 struct ContactEvent : SoftContactEvent<3> {
@@ -105,8 +93,9 @@ class BulletSoftBodies {
 
   /// Adds a body at rest, its model's origin at `position` (metres). The reference is valid until remove(). Between steps you
   /// may change the body through its own functions; the next substep sees the change.
-  /// @throws std::invalid_argument  the model's bodies break (SoftBodySettings::fracture), which bodies that touch with spheres cannot.
-  /// @pre the model is not null; the position is finite
+  /// @throws std::invalid_argument  the model is null, or its bodies break (SoftBodySettings::fracture), which bodies that touch with
+  /// spheres cannot.
+  /// @pre the position is finite
   SoftBody<3>& add(std::shared_ptr<const SoftBodyModel<3>> model, const Eigen::Vector3f& position);
 
   /// @throws std::invalid_argument  the body is not one of these.
@@ -131,7 +120,8 @@ class BulletSoftBodies {
   void detach(AttachmentId id);
   /// Moves the place in the world to which something is attached. The place moves evenly and arrives after `seconds` of simulated time, at
   /// the earliest at the end of the next substep.
-  /// @param position  metres: the new point of a hinge or rope; of a weld, where the middle of the patch shall be
+  /// @param position  metres: the new point of a hinge or rope; of a weld, where the middle of the patch shall be. It lies within the
+  ///                  body: attachment_ends().patch says where it is now
   /// @param rotation  of the place, relative to its orientation when the patch was attached; of any length but 0
   /// @throws std::invalid_argument  there is no such attachment, or it is to a body; a value is not finite; seconds below 0.
   void move_attachment(AttachmentId id, const Eigen::Vector3f& position,
@@ -207,7 +197,7 @@ class BulletSoftBodies {
   std::optional<SoftRayHit> cast_ray(const Eigen::Vector3f& from, const Eigen::Vector3f& to,
                                      const CollisionFilter& filter = {}) const;
 
-  SoftBodyTimes times() const;  ///< since the construction
+  SoftBodyTimes times() const;  ///< the time that these bodies have taken inside stepSimulation()
 
   /// Counts the crushed cells of the bodies that touch with their surfaces. Each call looks at all of their cells as they are now.
   /// softcell keeps crushed cells from being pressed further and pushes them back. If there are many for long, a body is
@@ -228,10 +218,6 @@ class BulletSoftBodies {
   /// For contact callbacks of bodies that touch with spheres: the particle that a collision object stands for. For any
   /// other object the result has no body.
   static Particle particle_of(const btCollisionObject& object);
-
-  /// Time spent in this class inside stepSimulation(), for all soft bodies of `world`, since the first object of this class was
-  /// constructed for it.
-  static std::chrono::nanoseconds time_spent(const btDynamicsWorld& world);
 
  private:
   struct Impl;

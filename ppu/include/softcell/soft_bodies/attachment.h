@@ -65,7 +65,7 @@ struct AttachmentSettings {
   std::optional<bool> touch = {};
 };
 
-/// Names an attachment. A coupling never uses a number twice.
+/// Names an attachment. A coupling never uses a number twice. A default one, 0, names none.
 enum class AttachmentId : std::uint32_t {};
 
 /// What an attachment did in the last substep.

@@ -11,8 +11,9 @@
 // When a body breaks, the object becomes the largest piece, so references to it stay valid. All other pieces are new bodies. A piece has
 // its own model, the velocities that its particles had, and the material of the whole body. A particle at a crack is split into several,
 // which share its mass; so the pieces together have the mass and both momenta of the whole. Regions do not reach across a crack, not even
-// where the body is still connected. The mesh opens along the broken faces, and the cut of the solid with these faces closes both sides, in
-// the mesh's material "cut". A piece may be as small as a single cell, a body of eight particles. By default no piece vanishes. With
+// where the body is still connected. The mesh opens along the broken faces, and the cut of the solid with these faces closes both sides: a
+// part of its own, object "cut", in the mesh's material "cut". If the mesh has no material of that name, the meshes of pieces have one more
+// than it, without looks. A piece may be as small as a single cell, a body of eight particles. By default no piece vanishes. With
 // Fracture::least_cells, pieces of fewer cells vanish and take their mass and momenta with them.
 //
 // Bodies of two dimensions break in the same way (box2d/box2d_soft_bodies.h). There a face is an edge between two squares, and a single

@@ -33,7 +33,8 @@ struct TriangleMesh {
   std::vector<Eigen::Vector2f> texture_coordinates = {};  ///< one per position; v grows upwards
   /// One per position: red, green, blue, alpha, 0..1, sRGB-encoded. Multiplied with the material's base colour.
   std::vector<Eigen::Vector4f> colours = {};
-  std::vector<MeshPart> parts = {};          ///< ascending; together they have all triangles
+  /// Ascending; together they have all triangles. The meshes of pieces of a broken body have a part "cut" behind these (fracture.h).
+  std::vector<MeshPart> parts = {};
   std::vector<MeshMaterial> materials = {};  ///< of the parts
 
   bool operator==(const TriangleMesh&) const = default;

@@ -26,6 +26,9 @@ TriangleMesh make_car(float length);
 /// +z.
 TriangleMesh make_penguin(float height);
 
+// The sides of a cone, cylinder and capsule are triangles as long as the side. A soft body that is to bend needs them divided:
+// tessellate.h.
+
 /// A spike: a cone about the y axis, its tip up; `segments` 3..2048.
 TriangleMesh make_cone(float radius, float height, int segments);
 

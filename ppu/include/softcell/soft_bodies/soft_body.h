@@ -42,7 +42,8 @@ struct Turning<3> {
 /// construction, except when it yields (soft_body_settings.h, Plasticity).
 ///
 /// To save a body's state, copy the SoftBody; to restore the state, assign the copy. An assignment counts as a change by the user, like the
-/// functions below.
+/// functions below. To save it in a file, write positions(), velocities(), own_rest() and, if they have changed, settings(); set_state(),
+/// set_rest_positions() and set_material() restore them.
 /// @tparam kDimension  2 or 3
 template <int kDimension>
 class SoftBody {
@@ -138,6 +139,9 @@ class SoftBody {
   /// @pre cell_size, half_width, density and contacts are the model's
   void set_material(const SoftBodySettings& settings);
   void translate(const Vector& by);  ///< metres @pre it is finite
+  /// Sets the positions (metres) and velocities (m/s) of all particles, for example those of a saved game.
+  /// @throws std::runtime_error  there are more or fewer of them than particles, or one is not finite; nothing has changed then
+  void set_state(std::span<const Vector> positions, std::span<const Vector> velocities);
   /// Puts the body back into the model's shape, at rest, with the model's own origin at `position` (metres). @pre it is finite
   void reset(const Vector& position);
   /// Teleports the body: rotates it about its centre of mass, then moves it by `translation` (metres). Velocities rotate with the body.

@@ -26,8 +26,8 @@ struct SurfaceHit {
   float share = 0;                   ///< 0..1, fraction of the motion
   Vector position = Vector::Zero();  ///< metres, on the surface
   Vector normal = Vector::UnitY();   ///< unit length, out of the body
-  std::uint32_t face =
-      0;  ///< the triangle of the model's mesh; the edge of the skin's outlines, counted through all of them
+  /// The triangle of the model's mesh; in two dimensions the edge of the skin's outlines, counted through all of them.
+  std::uint32_t face = 0;
 };
 
 /// The triangles of a deformed body, in two dimensions the edges of its outlines, in a tree of boxes. If a body in three dimensions has no

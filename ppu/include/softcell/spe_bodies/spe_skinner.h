@@ -87,8 +87,9 @@ class SpeSkinner {
   SpeSkinner(const SpeSkinner&) = delete;
   SpeSkinner& operator=(const SpeSkinner&) = delete;
 
-  /// Waits for the frame under way and adds a body to the frames to come. The body must stay in place until remove(). A body that breaks,
-  /// is cut or is assigned to has another model: remove() it before the next frame and add() it again, and its other pieces.
+  /// Waits for the frame under way and adds a body to the frames to come. The body must stay in place until remove(). A body that breaks or
+  /// is cut, or to which a body of another model is assigned, has another model: remove() it before the next frame and add() it again, and
+  /// its other pieces. A saved copy of the body has the same model as long as the body has not broken.
   /// @throws std::invalid_argument  its model has no mesh, or it was added before.
   /// @throws std::runtime_error     main memory is full; as finish_frame().
   void add(const SoftBody<3>& body);

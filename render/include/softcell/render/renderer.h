@@ -46,6 +46,9 @@ struct RendererSettings {
   float coarse_pixels = 0;
 };
 
+/// Meshes, pictures and shapes live until the program removes them or the renderer. A program that removes one must no longer draw with its
+/// handle: render() refuses a handle that names nothing, but one that is added later may have got it.
+///
 /// Draws with one sun that casts soft-edged shadows, light from sky and ground with ambient occlusion, tone mapping and sRGB encoding, with
 /// four samples per pixel. With one sample it smooths edges in the finished picture. It draws into its own framebuffer and has no global
 /// state. Use it on the context's thread; the context must outlive it. After the first frames, render() and pixels() allocate no memory
@@ -104,6 +107,8 @@ class Renderer {
   /// Adds a picture to draw meshes with. Copies the pixels before it returns.
   /// @throws std::invalid_argument  a picture without pixels, or larger than the context supports.
   TextureId add_texture(const Image& picture, const TextureSettings& settings = {});
+  /// Frees the memory of a picture. One that is added later may get its handle. @throws std::invalid_argument  no such texture.
+  void remove_texture(TextureId texture);
 
   /// Sets the rest shape of a mesh whose vertices change. RendererSettings::coarse_pixels needs it to leave out triangles.
   /// @param positions,normals  of the vertices in any one shape, metres; at least one of each for each vertex that the indices name
@@ -118,6 +123,9 @@ class Renderer {
   /// @throws std::invalid_argument  the numbers of normals and positions differ, or an index is out of range.
   StaticMeshId add_static_mesh(std::span<const Eigen::Vector3f> positions,
                                std::span<const Eigen::Vector3f> normals, std::span<const Triangle> triangles);
+  /// Frees the memory of a mesh of add_static_mesh(). One that is added later may get its handle. @throws std::invalid_argument  no such
+  /// mesh.
+  void remove_static_mesh(StaticMeshId mesh);
 
   /// Draws one frame: first opaque meshes, then meshes with an opacity below 1 in the given order, static ones last.
   /// @pre  opacities are 0..1; poses have a determinant above 0; shadow radii are above 0, those of particles 0 or above

@@ -1,22 +1,22 @@
-// What ContactStage shares with its worker: which contacts and attachments the worker gets, and in which stages it solves them.
+// What ContactSolver shares with its worker: which contacts and attachments the worker gets, and in which stages it solves them.
 
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 
-#include "ppu/contacts/contact_stage.h"
+#include "ppu/contacts/contact_solver.h"
 
 namespace softcell::ppu {
 
 /// Whether the worker can solve contacts that this thread has found.
-bool ContactStage::can_hand_to_worker(const Group& group) const {
+bool ContactSolver::can_hand_to_worker(const Group& group) const {
   return !group.by_worker && !group.on_held && group.contacts.size() <= ContactWorker::kMostContacts &&
          worker->holds(group.a) && worker->holds(group.b);
 }
 
 /// Finds the rigid bodies that the worker would move.
-void ContactStage::find_rigid_sets(std::span<ContactRigid> rigids) {
+void ContactSolver::find_rigid_sets(std::span<ContactRigid> rigids) {
   rigid_sets_.begin(rigids);
   for (std::size_t i = pair_groups_; i < group_count_; ++i) {
     if (!can_hand_to_worker(groups_[i])) continue;
@@ -32,7 +32,7 @@ void ContactStage::find_rigid_sets(std::span<ContactRigid> rigids) {
 }
 
 /// The worker gets the attachments if it also solves contacts, or if there are many: for a few of them a job takes longer than this thread.
-bool ContactStage::hand_attachments_to_worker(std::size_t rigids) {
+bool ContactSolver::hand_attachments_to_worker(std::size_t rigids) {
   attach_units_.clear();
   if (!has_attachments()) return false;
   const bool with_contacts = std::any_of(groups_.begin(), groups_.begin() + std::ptrdiff_t(group_count_),
@@ -49,7 +49,7 @@ bool ContactStage::hand_attachments_to_worker(std::size_t rigids) {
 }
 
 /// Copies contacts to the worker's memory if it can solve them.
-void ContactStage::hand_to_worker(Group& group, std::span<ContactRigid> rigids, float step) {
+void ContactSolver::hand_to_worker(Group& group, std::span<ContactRigid> rigids, float step) {
   if (!can_hand_to_worker(group)) return;
   const ContactSides sides{&bodies_[group.a], group.with_rigid ? nullptr : &bodies_[group.b], rigids};
   if (group.with_rigid) {
@@ -74,7 +74,7 @@ void ContactStage::hand_to_worker(Group& group, std::span<ContactRigid> rigids, 
 }
 
 /// The pairs of bodies that the worker solves, as units in stages.
-void ContactStage::add_pairs_to(SolveStages& stages) {
+void ContactSolver::add_pairs_to(SolveStages& stages) {
   for (std::size_t stage = 0; stage + 1 < order_.stages().size(); ++stage) {
     stages.stages.push_back(static_cast<std::uint32_t>(stages.units.size()));
     for (std::uint32_t unit = order_.stages()[stage]; unit < order_.stages()[stage + 1]; ++unit) {
@@ -87,7 +87,7 @@ void ContactStage::add_pairs_to(SolveStages& stages) {
   }
 }
 
-SolveGroup ContactStage::solved_by_worker(const Group& group) const {
+SolveGroup ContactSolver::solved_by_worker(const Group& group) const {
   SolveGroup solved{.a = group.a, .contacts = group.solved.contacts, .pushes = group.solved.pushes};
   if (!group.with_rigid) solved.b = group.b;
   if (group.rigid_set != RigidSets::kNone) solved.rigids = rigid_sets_.of(group.rigid_set);
@@ -96,7 +96,7 @@ SolveGroup ContactStage::solved_by_worker(const Group& group) const {
 }
 
 /// Adds groups with rigid bodies that move: one unit for each set of these.
-void ContactStage::add_rigid_sets_to(SolveStages& stages) {
+void ContactSolver::add_rigid_sets_to(SolveStages& stages) {
   if (rigid_sets_.sets() == 0) return;
   stages.stages.push_back(static_cast<std::uint32_t>(stages.units.size()));
   for (std::uint32_t set = 0; set < rigid_sets_.sets(); ++set) {
@@ -112,7 +112,7 @@ void ContactStage::add_rigid_sets_to(SolveStages& stages) {
 }
 
 /// All units may be solved at the same time.
-void ContactStage::add_attachments_to(SolveStages& stages, bool ends) const {
+void ContactSolver::add_attachments_to(SolveStages& stages, bool ends) const {
   stages.stages.push_back(static_cast<std::uint32_t>(stages.units.size()));
   for (std::uint32_t unit = 0; unit < attach_units_.units().size(); ++unit) {
     stages.units.push_back(static_cast<std::uint32_t>(stages.groups.size()));
@@ -121,7 +121,7 @@ void ContactStage::add_attachments_to(SolveStages& stages, bool ends) const {
 }
 
 /// Adds for each body its contacts with static bodies, and its touched cells.
-void ContactStage::add_bodies_to(SolveStages& stages, float stiffening) {
+void ContactSolver::add_bodies_to(SolveStages& stages, float stiffening) {
   constexpr std::size_t kBodiesInUnit = 12;
   stages.stages.push_back(static_cast<std::uint32_t>(stages.units.size()));
   std::size_t rigid = pair_groups_, in_unit = 0;
@@ -141,7 +141,7 @@ void ContactStage::add_bodies_to(SolveStages& stages, float stiffening) {
 }
 
 /// Gives the worker what it can solve; the rest goes to here_. @return  whether the worker solves attachments
-bool ContactStage::share_with_worker(std::span<ContactRigid> rigids, float step) {
+bool ContactSolver::share_with_worker(std::span<ContactRigid> rigids, float step) {
   weigh_rigid_groups(rigids);
   if (has_attachments()) begin_attachments(rigids, step);
   find_rigid_sets(rigids);
@@ -164,8 +164,8 @@ bool ContactStage::share_with_worker(std::span<ContactRigid> rigids, float step)
 }
 
 /// Solves this thread's groups of a round, after contacts between bodies. The worker waits.
-void ContactStage::solve_in_between(std::span<ContactRigid> rigids, float step, int round, float stiffening,
-                                    bool with_attachments) {
+void ContactSolver::solve_in_between(std::span<ContactRigid> rigids, float step, int round, float stiffening,
+                                     bool with_attachments) {
   iterate_here(std::span(here_).first(here_that_move_), rigids, step);
   if (with_attachments) solve_attachments(rigids, step, round);
   iterate_here(std::span(here_).subspan(here_that_move_), rigids, step);
@@ -177,7 +177,7 @@ void ContactStage::solve_in_between(std::span<ContactRigid> rigids, float step, 
 }
 
 /// Makes one chain of jobs for all rounds, unless this thread has to solve something in between.
-void ContactStage::solve_with_worker(std::span<ContactRigid> rigids, float step) {
+void ContactSolver::solve_with_worker(std::span<ContactRigid> rigids, float step) {
   const bool attachments_by_worker = share_with_worker(rigids, step);
   const bool attachments_here = has_attachments() && !attachments_by_worker;
   stages_.clear();
@@ -204,13 +204,13 @@ void ContactStage::solve_with_worker(std::span<ContactRigid> rigids, float step)
   attachments->take_back_spin();
 }
 
-void ContactStage::take_from_worker() {
+void ContactSolver::take_from_worker() {
   rigid_sets_.take();
   for (std::uint32_t i = 0; i < bodies_.size(); ++i)
     if (changed_by_worker(i)) worker->take(i, bodies_[i].velocities, bodies_[i].pushes);
 }
 
-void ContactStage::give_to_worker() {
+void ContactSolver::give_to_worker() {
   rigid_sets_.put();
   for (std::uint32_t i = 0; i < bodies_.size(); ++i)
     if (changed_by_worker(i)) worker->put(i, bodies_[i].velocities, bodies_[i].pushes);

@@ -29,7 +29,7 @@
 namespace softcell::ppu {
 
 /// A soft body and the obstacles near it.
-struct BodyInStage {
+struct BodyInSubstep {
   const ContactModel* model = nullptr;
   std::span<const Eigen::Vector3f> positions = {};   ///< of its particles, metres
   std::span<const Eigen::Vector3f> velocities = {};  ///< m/s, with the gravity of the substep included
@@ -69,13 +69,13 @@ Bounds<3> box_of_step(std::span<const Eigen::Vector3f> positions, std::span<cons
                       float step);
 
 /// Used by one thread.
-class ContactStage {
+class ContactSolver {
  public:
   /// Finds the contacts that bodies would have within `step` seconds and solves them: particles then move by step (v + push). Velocities of
   /// rigid bodies change, too.
   /// @throws std::runtime_error  a body is not finite, or 1e15 m large or far away.
   /// @param links  of rigid bodies with each other and with static ones; not those of attachments
-  void step(std::span<const BodyInStage> bodies, std::span<const Obstacle> obstacles,
+  void step(std::span<const BodyInSubstep> bodies, std::span<const Obstacle> obstacles,
             std::span<ContactRigid> rigids, const RigidLinks& links, float step);
 
   /// Velocities of a body after the last step, m/s; those of a sleeping body have not changed.
@@ -114,8 +114,8 @@ class ContactStage {
     bool with_rigid = false;
     bool by_worker = false;  ///< the worker solves them: they are in `solved`
     bool heavy = false;      ///< with a rigid body that is heavier than a
-    bool alternates =
-        false;             ///< with groups that touch the same light rigid body: one iteration each in turn
+    /// It alternates with groups that touch the same light rigid body: one iteration each in turn.
+    bool alternates = false;
     bool fast = false;     ///< the two bodies may pass through each other in the substep
     bool sharp = false;    ///< some of its contacts limit how far a moves on as a whole
     bool on_held = false;  ///< some of its contacts are SoftContact::on_held: the worker ignores that
@@ -139,14 +139,14 @@ class ContactStage {
   static constexpr std::size_t kManyAttachments = 16;
 
   void remember_crushed(std::uint32_t body);
-  void take_over(std::span<const BodyInStage> bodies, float step);
+  void take_over(std::span<const BodyInSubstep> bodies, float step);
   void find_held(std::span<const ContactRigid> rigids, float step);
-  void find_pairs(std::span<const BodyInStage> bodies);
-  bool may_touch(std::uint32_t a, std::uint32_t b, std::span<const BodyInStage> bodies) const;
+  void find_pairs(std::span<const BodyInSubstep> bodies);
+  bool may_touch(std::uint32_t a, std::uint32_t b, std::span<const BodyInSubstep> bodies) const;
   void hold_by_own_cells(Group& group);
   void find_here(Group& group, float step);
   void find_among_bodies(float step);
-  void find_with_rigid(std::span<const BodyInStage> bodies, std::span<const Obstacle> obstacles,
+  void find_with_rigid(std::span<const BodyInSubstep> bodies, std::span<const Obstacle> obstacles,
                        std::span<const ContactRigid> rigids, float step);
   Group& next_group(std::uint32_t a, std::uint32_t b, bool with_rigid);
   void put_in_order();
@@ -190,7 +190,7 @@ class ContactStage {
   void find_free_bodies();
   void take_back_lost_spin(float step);
 
-  // In contact_stage_worker.cpp:
+  // In contact_solver_worker.cpp:
   bool can_hand_to_worker(const Group& group) const;
   void find_rigid_sets(std::span<ContactRigid> rigids);
   bool hand_attachments_to_worker(std::size_t rigids);

@@ -1,4 +1,4 @@
-#include "ppu/bullet/processor_time.h"
+#include "ppu/bodies/processor_time.h"
 
 #include <time.h>
 

@@ -1,4 +1,4 @@
-#include "ppu/contacts/contact_stage.h"
+#include "ppu/contacts/contact_solver.h"
 
 #include <algorithm>
 #include <array>
@@ -78,7 +78,7 @@ Bounds<3> box_of_step(std::span<const Vector3f> positions, std::span<const Vecto
   return box;
 }
 
-void ContactStage::remember_crushed(std::uint32_t body) {
+void ContactSolver::remember_crushed(std::uint32_t body) {
   if (crushed_count_ == crushed_.size()) crushed_.emplace_back();
   Crushed& crushed = crushed_[crushed_count_++];
   crushed.body = body;
@@ -86,16 +86,16 @@ void ContactStage::remember_crushed(std::uint32_t body) {
   crushed.pushes.assign(bodies_[body].pushes.begin(), bodies_[body].pushes.end());
 }
 
-void ContactStage::take_over(std::span<const BodyInStage> bodies, float step) {
+void ContactSolver::take_over(std::span<const BodyInSubstep> bodies, float step) {
   bodies_.resize(bodies.size());
   cells_.resize(bodies.size());
   is_crushed_.resize(bodies.size());
   crushed_count_ = 0;
   // Resizes it now, before bodies refer to it.
-  for (const BodyInStage& body : bodies)
+  for (const BodyInSubstep& body : bodies)
     nothing_moves_.resize(std::max(nothing_moves_.size(), body.positions.size()));
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    const BodyInStage& soft = bodies[i];
+    const BodyInSubstep& soft = bodies[i];
     ContactBody& body = bodies_[i];
     body.model = soft.model;
     body.positions = soft.positions;
@@ -138,7 +138,7 @@ void ContactStage::take_over(std::span<const BodyInStage> bodies, float step) {
 
 /// Finds the particles that rigid bodies cannot push away, however heavy these are. Otherwise each round would give way by no more than the
 /// particles' own masses resist.
-void ContactStage::find_held(std::span<const ContactRigid> rigids, float step) {
+void ContactSolver::find_held(std::span<const ContactRigid> rigids, float step) {
   if (!has_attachments()) return;
   held_.clear();
   attachments->append_held(rigids, step, held_);
@@ -146,7 +146,7 @@ void ContactStage::find_held(std::span<const ContactRigid> rigids, float step) {
     if (!bodies_[held.body].asleep) bodies_[held.body].hold(held.particle, held.velocity);
 }
 
-bool ContactStage::may_touch(std::uint32_t a, std::uint32_t b, std::span<const BodyInStage> bodies) const {
+bool ContactSolver::may_touch(std::uint32_t a, std::uint32_t b, std::span<const BodyInSubstep> bodies) const {
   if (bodies[a].asleep && bodies[b].asleep) return false;
   if (a == b) return may_touch_itself(bodies_[a]);
   if (!bodies[a].filter.may_touch(bodies[b].filter)) return false;
@@ -154,7 +154,7 @@ bool ContactStage::may_touch(std::uint32_t a, std::uint32_t b, std::span<const B
 }
 
 /// Pairs of bodies whose boxes overlap, and folded bodies with themselves, in ascending order.
-void ContactStage::find_pairs(std::span<const BodyInStage> bodies) {
+void ContactSolver::find_pairs(std::span<const BodyInSubstep> bodies) {
   by_low_.resize(bodies.size());
   std::iota(by_low_.begin(), by_low_.end(), 0u);
   std::sort(by_low_.begin(), by_low_.end(), [&](std::uint32_t i, std::uint32_t j) {
@@ -171,7 +171,7 @@ void ContactStage::find_pairs(std::span<const BodyInStage> bodies) {
   std::sort(pairs_.begin(), pairs_.end());
 }
 
-ContactStage::Group& ContactStage::next_group(std::uint32_t a, std::uint32_t b, bool with_rigid) {
+ContactSolver::Group& ContactSolver::next_group(std::uint32_t a, std::uint32_t b, bool with_rigid) {
   if (group_count_ == groups_.size()) groups_.emplace_back();
   Group& group = groups_[group_count_++];
   group.a = a, group.b = b, group.with_rigid = with_rigid;
@@ -183,7 +183,7 @@ ContactStage::Group& ContactStage::next_group(std::uint32_t a, std::uint32_t b, 
 }
 
 /// Looks for points of both bodies.
-void ContactStage::find_here(Group& group, float step) {
+void ContactSolver::find_here(Group& group, float step) {
   const ContactBody &a = bodies_[group.a], &b = bodies_[group.b];
   group.fast = group.a != group.b && are_fast(a, b);
   if (group.fast)
@@ -204,14 +204,14 @@ void ContactStage::find_here(Group& group, float step) {
 }
 
 /// For contacts that the worker has found.
-void ContactStage::hold_by_own_cells(Group& group) {
+void ContactSolver::hold_by_own_cells(Group& group) {
   const ContactBody &a = bodies_[group.a], &b = bodies_[group.b];
   if (!a.model->is_flat() && !b.model->is_flat()) return;
   for (spu::SolveContact& contact : group.solved.contacts) ppu::hold_by_own_cells(contact, a, b);
 }
 
 /// Waits for the worker's results.
-void ContactStage::find_among_bodies(float step) {
+void ContactSolver::find_among_bodies(float step) {
   const std::span<const FoundContacts> found =
       asked_.empty() ? std::span<const FoundContacts>() : worker->found();
   std::size_t next = 0;
@@ -229,8 +229,9 @@ void ContactStage::find_among_bodies(float step) {
   }
 }
 
-void ContactStage::find_with_rigid(std::span<const BodyInStage> bodies, std::span<const Obstacle> obstacles,
-                                   std::span<const ContactRigid> rigids, float step) {
+void ContactSolver::find_with_rigid(std::span<const BodyInSubstep> bodies,
+                                    std::span<const Obstacle> obstacles, std::span<const ContactRigid> rigids,
+                                    float step) {
   for (std::uint32_t a = 0; a < bodies_.size(); ++a) {
     if (bodies[a].obstacles.empty()) continue;
     Group& group = next_group(a, a, true);
@@ -245,14 +246,14 @@ void ContactStage::find_with_rigid(std::span<const BodyInStage> bodies, std::spa
 }
 
 /// Orders groups: pairs by ContactOrder; then groups with moving rigid bodies; then those with static ones.
-void ContactStage::put_in_order() {
+void ContactSolver::put_in_order() {
   pairs_.clear();
   for (std::size_t i = 0; i < pair_groups_; ++i) pairs_.emplace_back(groups_[i].a, groups_[i].b);
   order_.arrange(bodies_, pairs_);
 }
 
 /// Pushes that move a body's cells apart must not move it into others.
-void ContactStage::hold_pushes_of_crushed_bodies() {
+void ContactSolver::hold_pushes_of_crushed_bodies() {
   for (std::size_t i = 0; i < group_count_; ++i) {
     Group& group = groups_[i];
     if (!is_crushed_[group.a] && !is_crushed_[group.b]) continue;
@@ -265,7 +266,7 @@ void ContactStage::hold_pushes_of_crushed_bodies() {
 
 /// Cells that get their volume back in a slant push their lower corners one way and their upper ones the other. What the body lies on holds
 /// it against that by friction, too; a crushed body would crawl over level ground otherwise.
-void ContactStage::hold_pushes_by_friction(const Group& group, std::span<const ContactRigid> rigids) {
+void ContactSolver::hold_pushes_by_friction(const Group& group, std::span<const ContactRigid> rigids) {
   constexpr int kIterations = 3;
   const ContactBody& body = bodies_[group.a];
   for (int i = 0; i < kIterations; ++i)
@@ -285,7 +286,7 @@ void ContactStage::hold_pushes_by_friction(const Group& group, std::span<const C
 }
 
 /// Points near each other move the same particles. The mobility of each point is therefore taken for its share of all their impulses.
-void ContactStage::find_presses(const Group& group, std::span<const ContactRigid> rigids) {
+void ContactSolver::find_presses(const Group& group, std::span<const ContactRigid> rigids) {
   const ContactBody& body = bodies_[group.a];
   const auto for_each_press = [&](const auto& work) {
     for (const SoftContact& contact : group.contacts)
@@ -308,14 +309,14 @@ void ContactStage::find_presses(const Group& group, std::span<const ContactRigid
   });
 }
 
-void ContactStage::find_supports(std::span<ContactRigid> rigids, const RigidLinks& links, float step) {
+void ContactSolver::find_supports(std::span<ContactRigid> rigids, const RigidLinks& links, float step) {
   presses_.clear();
   if (!links.empty())
     for (std::size_t i = pair_groups_; i < group_count_; ++i) find_presses(groups_[i], rigids);
   supports_.hold(rigids, links, presses_, step);
 }
 
-void ContactStage::release_supports() {
+void ContactSolver::release_supports() {
   if (supports_.empty()) return;
   for (std::size_t i = pair_groups_; i < group_count_; ++i) {
     const Group& group = groups_[i];
@@ -331,7 +332,7 @@ void ContactStage::release_supports() {
 
 /// Collects contacts of bodies with a restitution, and contacts with sharp things, whether found by the worker or here. Two bodies that
 /// pressed on each other in the last substep do not hit each other: their relative motion is deformation.
-void ContactStage::bounce(std::span<ContactRigid> rigids, float step) {
+void ContactSolver::bounce(std::span<ContactRigid> rigids, float step) {
   for (std::size_t i = 0; i < group_count_; ++i) {
     const Group& group = groups_[i];
     const ContactBody &a = bodies_[group.a], &b = bodies_[group.b];
@@ -385,7 +386,7 @@ void ContactStage::bounce(std::span<ContactRigid> rigids, float step) {
 }
 
 /// Remembers them for the bounces of the next substep.
-void ContactStage::remember_who_presses(std::span<const ContactRigid> rigids) {
+void ContactSolver::remember_who_presses(std::span<const ContactRigid> rigids) {
   pressed_.clear();
   for (std::size_t i = 0; i < group_count_; ++i) {
     const Group& group = groups_[i];
@@ -401,7 +402,7 @@ void ContactStage::remember_who_presses(std::span<const ContactRigid> rigids) {
   std::sort(pressed_.begin(), pressed_.end());
 }
 
-void ContactStage::find_touched_cells() {
+void ContactSolver::find_touched_cells() {
   touched_.resize(bodies_.size());
   // Most cells are touched at several points. Room for each cell twice is enough.
   const auto add = [&](std::uint32_t body, std::uint32_t cell) {
@@ -430,13 +431,13 @@ void ContactStage::find_touched_cells() {
   }
 }
 
-void ContactStage::stiffen_touched_cells() {
+void ContactSolver::stiffen_touched_cells() {
   for (std::size_t i = 0; i < bodies_.size(); ++i)
     for (const std::uint32_t cell : touched_[i]) stiffen(bodies_[i], cell, settings.stiffening);
 }
 
-void ContactStage::step(std::span<const BodyInStage> bodies, std::span<const Obstacle> obstacles,
-                        std::span<ContactRigid> rigids, const RigidLinks& links, float step) {
+void ContactSolver::step(std::span<const BodyInSubstep> bodies, std::span<const Obstacle> obstacles,
+                         std::span<ContactRigid> rigids, const RigidLinks& links, float step) {
   take_over(bodies, step);
   find_held(rigids, step);
   group_count_ = 0;
@@ -473,7 +474,7 @@ void ContactStage::step(std::span<const BodyInStage> bodies, std::span<const Obs
   remember_who_presses(rigids);
 }
 
-void ContactStage::iterate_here(std::span<Group* const> groups, std::span<ContactRigid> rigids, float step) {
+void ContactSolver::iterate_here(std::span<Group* const> groups, std::span<ContactRigid> rigids, float step) {
   for_each_turn(groups, [&](Group& group, int iterations) {
     const ContactSides sides{&bodies_[group.a], group.with_rigid ? nullptr : &bodies_[group.b], rigids};
     for (int i = 0; i < iterations; ++i) iterate(group.contacts, sides, step);
@@ -481,7 +482,7 @@ void ContactStage::iterate_here(std::span<Group* const> groups, std::span<Contac
 }
 
 /// Solves groups in the same order as a worker would, and then those that are left.
-void ContactStage::solve_here(std::span<ContactRigid> rigids, float step) {
+void ContactSolver::solve_here(std::span<ContactRigid> rigids, float step) {
   bounce(rigids, step);
   here_.clear();
   for (const std::uint32_t i : order_.order()) here_.push_back(&groups_[i]);
@@ -500,14 +501,14 @@ void ContactStage::solve_here(std::span<ContactRigid> rigids, float step) {
 
 /// Each round solves what contacts have left. The last one limits pushes before contacts push for the last time, so that contacts push
 /// against the limited ones.
-void ContactStage::solve_attachments(std::span<ContactRigid> rigids, float step, int round) {
+void ContactSolver::solve_attachments(std::span<ContactRigid> rigids, float step, int round) {
   if (!has_attachments()) return;
   if (round == 0) begin_attachments(rigids, step);
   attachments->iterate(attachment_iterations());
   if (round + 1 == rounds()) attachments->finish();
 }
 
-void ContactStage::begin_attachments(std::span<ContactRigid> rigids, float step) {
+void ContactSolver::begin_attachments(std::span<ContactRigid> rigids, float step) {
   attached_.clear();
   for (ContactBody& body : bodies_)
     attached_.push_back(
@@ -515,7 +516,7 @@ void ContactStage::begin_attachments(std::span<ContactRigid> rigids, float step)
   attachments->begin(attached_, rigids, step);
 }
 
-void ContactStage::weigh_rigid_groups(std::span<const ContactRigid> rigids) {
+void ContactSolver::weigh_rigid_groups(std::span<const ContactRigid> rigids) {
   // As a share of the soft bodies' mass. In one iteration, a lighter rigid body passes on little of one soft body's impulse to another.
   constexpr float kLight = 0.2f;
   touched_rigids_.assign(rigids.size(), {});
@@ -544,7 +545,7 @@ void ContactStage::weigh_rigid_groups(std::span<const ContactRigid> rigids) {
 }
 
 /// Groups with moving rigid bodies come before groups with static ones.
-void ContactStage::add_rigid_groups(std::span<const ContactRigid> rigids) {
+void ContactSolver::add_rigid_groups(std::span<const ContactRigid> rigids) {
   const auto with_moving = [&](const Group& group) {
     return std::any_of(group.contacts.begin(), group.contacts.end(),
                        [&](const SoftContact& contact) { return rigids[contact.rigid].inverse_mass != 0; });
@@ -556,13 +557,13 @@ void ContactStage::add_rigid_groups(std::span<const ContactRigid> rigids) {
   }
 }
 
-void ContactStage::prepare_here(std::span<ContactRigid> rigids) {
+void ContactSolver::prepare_here(std::span<ContactRigid> rigids) {
   for (Group* const group : here_)
     prepare(group->contacts, {&bodies_[group->a], group->with_rigid ? nullptr : &bodies_[group->b], rigids});
 }
 
 /// Finds out which bodies touch nothing rigid, nor any that does: together these keep their angular momentum.
-void ContactStage::find_free_bodies() {
+void ContactSolver::find_free_bodies() {
   find_islands(islands_);
   is_free_.assign(bodies_.size(), true);
   for (std::size_t g = pair_groups_; g < group_count_; ++g) is_free_[islands_.find(groups_[g].a)] = false;
@@ -573,7 +574,7 @@ void ContactStage::find_free_bodies() {
 
 /// Sums up pairs of soft bodies, and crushed ones that are free. Rigid and sleeping bodies are not counted here. A push moves particles
 /// together with their momenta.
-void ContactStage::take_back_lost_spin(float step) {
+void ContactSolver::take_back_lost_spin(float step) {
   using Eigen::Vector3d;
   lost_spin_.begin(bodies_.size());
   for (std::size_t g = 0; g < pair_groups_; ++g) {
@@ -618,7 +619,7 @@ void ContactStage::take_back_lost_spin(float step) {
   lost_spin_.take_back(bodies_);
 }
 
-void ContactStage::find_islands(DisjointSets& islands) const {
+void ContactSolver::find_islands(DisjointSets& islands) const {
   islands.reset(bodies_.size());
   for (std::size_t g = 0; g < pair_groups_; ++g) {
     const Group& group = groups_[g];
@@ -630,7 +631,7 @@ void ContactStage::find_islands(DisjointSets& islands) const {
   }
 }
 
-void ContactStage::append_contacts(std::vector<PressingContact>& contacts) const {
+void ContactSolver::append_contacts(std::vector<PressingContact>& contacts) const {
   for (std::size_t i = 0; i < group_count_; ++i) {
     const Group& group = groups_[i];
     const auto append = [&](float impulse, std::uint32_t rigid, const Vector3f& point,
