@@ -30,7 +30,7 @@ class CrushedCells {
  public:
   /// Finds cells that would be crushed at the substep's end. It removes velocities that crush them further, and adds pushes that give them
   /// back a share of their volume. Momentum is kept. Of angular momentum moment() is gained, and what
-  /// pushes make of it, which depends on the velocities at the end (ContactStage::take_back_lost_spin()).
+  /// pushes make of it, which depends on the velocities at the end (ContactSolver::take_back_lost_spin()).
   /// @param body  its velocities and pushes change; its ends are not updated
   /// @return      whether velocities have changed
   bool hold(ContactBody& body, float step);
