@@ -110,7 +110,8 @@ void SurfaceContacts2d::begin(Bodies bodies, const Box2dAttachments& attachments
                   .restitution = soft.settings().restitution,
                   .box = box_of_step(kept.positions, kept.velocities, step),
                   .obstacles = std::move(in_substep.obstacles),
-                  .sides = &kept.sides};
+                  .sides = &kept.sides,
+                  .self_contacts = soft.settings().self_contacts};
     in_substep.obstacles.clear();
     in_substep.filter = body.filter();
     obstacles_.add_near(in_substep.box, soft.centre_of_mass(), in_substep.filter, in_substep.obstacles);

@@ -101,7 +101,8 @@ void SurfaceContacts::step(std::span<SurfaceBody* const> bodies, float step) {
                   .restitution = soft.settings().restitution,
                   .box = box_of_step(soft.positions(), soft.velocities(), step),
                   .obstacles = std::move(in_substep.obstacles),
-                  .sides = &bodies[i]->sides()};
+                  .sides = &bodies[i]->sides(),
+                  .self_contacts = soft.settings().self_contacts};
     in_substep.obstacles.clear();
     obstacles_.add_near(in_substep.box, bodies[i]->filter().group, bodies[i]->filter().mask,
                         in_substep.obstacles);

@@ -148,7 +148,7 @@ void ContactSolver::find_held(std::span<const ContactRigid> rigids, float step) 
 
 bool ContactSolver::may_touch(std::uint32_t a, std::uint32_t b, std::span<const BodyInSubstep> bodies) const {
   if (bodies[a].asleep && bodies[b].asleep) return false;
-  if (a == b) return may_touch_itself(bodies_[a]);
+  if (a == b) return bodies[a].self_contacts && may_touch_itself(bodies_[a]);
   if (!bodies[a].filter.may_touch(bodies[b].filter)) return false;
   return !has_attachments() || !attachments->parts(a, b);
 }

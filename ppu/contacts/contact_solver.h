@@ -40,6 +40,7 @@ struct BodyInSubstep {
   KnownSides* sides = nullptr;                ///< what the body remembers from substep to substep; not null
   bool asleep = false;                        ///< contacts do not move it
   CollisionFilter filter = {};                ///< towards other soft bodies
+  bool self_contacts = true;                  ///< SoftBodySettings::self_contacts
 };
 
 /// A contact of the last step with an impulse above 0.

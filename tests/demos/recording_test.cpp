@@ -437,6 +437,7 @@ std::vector<SceneChange<AScene>> common_changes() {
            {"friction of a soft body", [](Settings& s) { s.friction += 0.1f; }},
            {"restitution of a soft body", [](Settings& s) { s.restitution += 0.1f; }},
            {"contacts of a soft body", [](Settings& s) { s.contacts = !s.contacts; }},
+           {"self_contacts", [](Settings& s) { s.self_contacts = !s.self_contacts; }},
            {"frequency", [](Settings& s) { s.frequency = 2.0f; }},
            {"damping_time", [](Settings& s) { s.damping_time = 3.0f; }},
            {"plasticity", [](Settings& s) { s.plasticity = ppu::Plasticity{}; }},

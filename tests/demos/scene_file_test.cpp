@@ -135,6 +135,7 @@ frequency = 4
 damping_time = 0.5
 friction = 0.1
 restitution = 0.5
+self_contacts = false
 plasticity = { yield = 0.25, limit = 2 }
 fracture = { stretch = 0.5, least_cells = 4 }
 [[box]]
@@ -214,6 +215,7 @@ begin = 2
   EXPECT_EQ(body.settings.damping_time, 0.5f);
   EXPECT_EQ(body.settings.friction, 0.1f);
   EXPECT_EQ(body.settings.restitution, 0.5f);
+  EXPECT_FALSE(body.settings.self_contacts);
   EXPECT_EQ(body.settings.plasticity, (ppu::Plasticity{.yield = 0.25f, .creep = 10, .limit = 2}));
   EXPECT_EQ(body.settings.fracture, (ppu::Fracture{.stretch = 0.5f, .turn = {}, .least_cells = 4}));
   EXPECT_EQ(body.position, Eigen::Vector3f(3, 2.5f, 4));

@@ -61,11 +61,12 @@ class Hash {
     add(positions, triangles);  // everything else only affects looks
   }
   void add(const ppu::SoftBodySettings& settings) {
-    const auto& [cell_size, half_width, density, alpha, damping, friction, restitution, contacts, frequency,
-                 damping_time, plasticity, fracture] = settings;
+    const auto& [cell_size, half_width, density, alpha, damping, friction, restitution, contacts,
+                 self_contacts, frequency, damping_time, plasticity, fracture] = settings;
     add(cell_size, half_width, density, alpha, damping, friction, frequency, damping_time);
     add_unless(restitution, 0.0f);
     add_unless(contacts, true);
+    add_unless(self_contacts, true);
     if (plasticity) add('p', plasticity->yield, plasticity->creep, plasticity->limit);
     if (!fracture) return;
     const auto& [stretch, turn, least_cells] = *fracture;

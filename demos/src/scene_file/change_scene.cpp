@@ -78,6 +78,7 @@ Table new_item(const SceneOf& scene, const std::string& name, const NewBody<Dime
               number_value(first.damping_time.value_or(first.damping)));
     set_field(item, "friction", number_value(first.friction));
     set_field(item, "restitution", number_value(first.restitution));
+    if (!first.self_contacts) set_field(item, "self_contacts", Value{.data = false, .place = {}});
   }
   set_field(item, "position", vector_value(body.middle));
   return item;

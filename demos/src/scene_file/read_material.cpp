@@ -60,7 +60,8 @@ void read_fields(FieldReader& fields, Material& material, Need cell_size) {
       .number("damping", s.damping, kShare)
       .number("damping_time", s.damping_time, kDampingTime)
       .number("friction", s.friction, kFriction)
-      .number("restitution", s.restitution, kShare);
+      .number("restitution", s.restitution, kShare)
+      .flag("self_contacts", s.self_contacts);
   if (const Value* const value = fields.field("plasticity")) {
     ppu::Plasticity plasticity;
     FieldReader of_plasticity(*value, "the plasticity of " + fields.what());

@@ -129,11 +129,12 @@ class RandomScene {
 
 /// SOFTCELL_RANDOM_SCENES: how many.
 /// A rod that is thrown so that it folds: its cells are crushed and pushed back for a while.
-TEST(Conservation, OfBothMomentaOfABodyThatFoldsOntoItself) {
-  ContactWorld w({0, 0, 0});
+/// A rod whose ends fold onto each other.
+SoftBody<3>& add_folding_rod(ContactWorld& w, bool self_contacts) {
   SoftBodySettings settings = settings_of(0.06f);
   settings.half_width = 1;
   settings.alpha = 0.1f;
+  settings.self_contacts = self_contacts;
   SoftBody<3>& body = w.add(make_box({2.2f, 0.12f, 0.12f}, 0.06f), settings, {0, 0, 0});
   for (std::uint32_t i = 0; i < body.model().particles(); ++i) {
     const float x = body.position(i).x();
@@ -141,6 +142,25 @@ TEST(Conservation, OfBothMomentaOfABodyThatFoldsOntoItself) {
   }
   body.add_angular_velocity({0.3f, 1, 0.5f});
   body.add_velocity(-body.linear_momentum() / body.model().mass());
+  return body;
+}
+
+TEST(SelfContacts, CanBeSwitchedOff) {
+  for (const bool self_contacts : {true, false}) {
+    ContactWorld w({0, 0, 0});
+    add_folding_rod(w, self_contacts);
+    std::vector<Contact> touching;
+    for (int i = 0; i < 60; ++i) {
+      w.run(1);
+      w.bodies.append_contacts(touching);
+    }
+    EXPECT_EQ(touching.empty(), !self_contacts);
+  }
+}
+
+TEST(Conservation, OfBothMomentaOfABodyThatFoldsOntoItself) {
+  ContactWorld w({0, 0, 0});
+  add_folding_rod(w, true);
   const Sums before = sums_of(w.bodies);
   std::size_t most_crushed = 0, most_contacts = 0;
   std::vector<Contact> touching;

@@ -48,6 +48,8 @@ struct SoftBodySettings {
   /// body; Box2D takes the larger one.
   float restitution = 0;
   bool contacts = true;  ///< false: nothing touches the body, and all its particles are inner ones
+  /// false: the body may pass through itself; with spheres or circles it always may. Pieces that break off it still touch each other.
+  bool self_contacts = true;
   std::optional<float> frequency = {};  ///< Hz, in place of alpha: at which a particle swings about its goal
   std::optional<float> damping_time = {};     ///< s, in place of damping: deviations fall to 1/e in this time
   std::optional<Plasticity> plasticity = {};  ///< none: the body is elastic. Up to 4,096 particles
