@@ -253,6 +253,43 @@ TEST_F(CheckerTest, AStatusThatDoesNotWaitSaysNothingByBeingThere) {
   EXPECT_EQ(rules(), std::vector<std::string>{"load-in-flight"});
 }
 
+/// A wait for any promises one tag. Whether the others are complete too depends on the schedule, so the program has to wait for them.
+TEST_F(CheckerTest, AWaitForAllMayFollowOneForAnyOfTheSameTags) {
+  for (const std::uint32_t tag : {3u, 4u}) issue(MfcOpcode::get, buffer_ + 64 * (tag - 3), kEa, 64, tag);
+  const auto wait = [&](std::uint32_t condition) {
+    checker_.write(22, 1u << 3 | 1u << 4);
+    checker_.write(23, condition);
+    channels_.answer = 1u << 3 | 1u << 4;  // both have arrived by chance
+    checker_.read(24);
+  };
+  wait(1);
+  wait(1);
+  wait(2);
+  EXPECT_EQ(rules(), Texts{});
+  wait(2);
+  EXPECT_EQ(rules(), Texts{"tag-without-command"}) << "all were waited for";
+}
+
+/// An SPU stores the whole quadword: of a get of a part of it, it writes back what was there before.
+TEST_F(CheckerTest, AStoreBesideAGetOfAPartOfTheQuadwordIsFound) {
+  store(buffer_, 128);
+  issue(MfcOpcode::get, buffer_ + 20, kEa + 4, 4, 3);
+  load(buffer_ + 16, 4);
+  store(buffer_ + 32, 4);
+  store(buffer_ + 12, 4);
+  EXPECT_EQ(rules(), Texts{}) << "in other quadwords, or only loaded";
+  store(buffer_ + 24, 8);
+  ASSERT_EQ(rules(), Texts{"store-in-flight"});
+  const std::string message = findings_.list().front().fault.message();
+  EXPECT_NE(message.find("store of 8 bytes at buffer + 24"), std::string::npos) << message;
+  EXPECT_NE(message.find("an SPU stores the whole quadword; in flight: get of 4 bytes, tag 3"),
+            std::string::npos)
+      << message;
+  wait_for(3);
+  store(buffer_ + 24, 8);
+  EXPECT_EQ(findings_.list().front().count, 1u);
+}
+
 TEST_F(CheckerTest, AVariableOfAFunctionThatHasReturnedIsNoBuffer) {
   const std::uint32_t variable = dma::kLocalStoreBytes - 384;
   store(variable, 128);

@@ -34,6 +34,7 @@ struct Options {
   bool relocatable = false;                  ///< -r
   bool verbose = false;
   Words meaningless;  ///< options that have no meaning here
+  Words notes;        ///< sentences on options that cannot be followed
 };
 
 /// Parses the options of the compiler. @param language  of standard input and of `.c` files: for softcell-spu-g++ it is C++.
@@ -43,7 +44,7 @@ Options parse_compiler_options(const Words& words, Language language);
 /// Parses the options of ld.
 Options parse_linker_options(const Words& words);
 
-/// Prints once which options have no meaning, unless SOFTCELL_QUIET is set.
+/// Prints once which options have no meaning or cannot be followed, unless SOFTCELL_QUIET is set.
 void note_meaningless(const std::string& command, const Options& options);
 
 }  // namespace softcell::toolchain
