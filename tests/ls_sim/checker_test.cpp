@@ -253,21 +253,30 @@ TEST_F(CheckerTest, AStatusThatDoesNotWaitSaysNothingByBeingThere) {
   EXPECT_EQ(rules(), std::vector<std::string>{"load-in-flight"});
 }
 
-/// A wait for any promises one tag. Whether the others are complete too depends on the schedule, so the program has to wait for them.
-TEST_F(CheckerTest, AWaitForAllMayFollowOneForAnyOfTheSameTags) {
-  for (const std::uint32_t tag : {3u, 4u}) issue(MfcOpcode::get, buffer_ + 64 * (tag - 3), kEa, 64, tag);
-  const auto wait = [&](std::uint32_t condition) {
-    checker_.write(22, 1u << 3 | 1u << 4);
-    checker_.write(23, condition);
-    channels_.answer = 1u << 3 | 1u << 4;  // both have arrived by chance
-    checker_.read(24);
-  };
-  wait(1);
-  wait(1);
-  wait(2);
-  EXPECT_EQ(rules(), Texts{});
-  wait(2);
-  EXPECT_EQ(rules(), Texts{"tag-without-command"}) << "all were waited for";
+TEST_F(CheckerTest, AWaitForATagThatHasNoCommandAtAllIsFound) {
+  wait_for(3);  // the first round of two buffers
+  issue(MfcOpcode::get, buffer_, kEa, 64, 3);
+  wait_for(3);
+  wait_for(3);
+  wait_for(4);
+  checker_.write(22, ~0u);
+  checker_.write(23, 2);
+  EXPECT_EQ(rules(), Texts{}) << "commands may come";
+  checker_.end_run();
+  ASSERT_EQ(rules(), Texts{"tag-without-command"});
+  EXPECT_NE(findings_.list().front().fault.message().find("tag 4: the program has issued no command of it"),
+            std::string::npos);
+}
+
+TEST_F(CheckerTest, AListOfAFunctionThatHasReturnedIsFound) {
+  const std::uint32_t list = dma::kLocalStoreBytes - 384;
+  store(list, 16);
+  issue(MfcOpcode::getl, buffer_, kEa & ~0xFFFFFFFFull | list, 16, 3);
+  checker_.on_access({{out_}, 4, true, engine_.at, {list - 64}});
+  EXPECT_EQ(rules(), Texts{}) << "its function runs, and calls others";
+  checker_.on_access({{out_}, 4, true, engine_.at, {list + 16}});
+  checker_.on_access({{out_}, 4, true, engine_.at, {list + 16}});
+  EXPECT_EQ(rules(), Texts{"list-in-flight"}) << "once";
 }
 
 /// An SPU stores the whole quadword: of a get of a part of it, it writes back what was there before.
@@ -454,15 +463,6 @@ TEST_F(CheckerTest, CodeMayBeReadAndNotWritten) {
   wait_for(0);
   EXPECT_EQ(rules(), Texts{"write-to-code"});
   EXPECT_EQ(findings_.list().front().count, 2u);
-}
-
-TEST_F(CheckerTest, ATagIsWaitedForOncePerCommand) {
-  issue(MfcOpcode::get, buffer_, kEa, 128, 3);
-  wait_for(3, 0);
-  wait_for(3);
-  EXPECT_EQ(rules(), Texts{});
-  wait_for(3);
-  EXPECT_EQ(rules(), Texts{"tag-without-command"});
 }
 
 TEST_F(CheckerTest, TheEndWaitsForEverything) {

@@ -57,6 +57,12 @@ file(WRITE ${lab}/old.cpp "int f() { register int i = 3; return i; }\n")
 says(0 "note: -std=gnu\\+\\+98: C\\+\\+ is compiled as C\\+\\+17 here" ${BIN}/softcell-spu-g++ -Werror -std=gnu++98 -c ${lab}/old.cpp -o ${lab}/old.o)
 says(0 "note: -fexceptions: programs have no exceptions" ${BIN}/softcell-spu-g++ -fexceptions -c ${lab}/old.cpp -Wno-register -o ${lab}/old.o)
 
+# The headers of the PPU side have no warnings of their own.
+file(WRITE ${lab}/pedantic.c "#include <cbea_map.h>\n#include <libspe2.h>\n#include <libsync.h>\n#include <ppu_intrinsics.h>\nint main(void) { return 0; }\n")
+foreach(standard -std=c99 -ansi)
+  says(0 "^$" gcc ${standard} -pedantic -Wall -Wextra -Werror -I${INCLUDE} -c ${lab}/pedantic.c -o ${lab}/pedantic.o)
+endforeach()
+
 # Warnings are those that the program asks for.
 file(WRITE ${lab}/warned.cpp "struct s { int a, b, c; };\nint b;\nint f(int b, unsigned u) { struct s q = {1}; return b < u ? q.a : 0; }\n")
 foreach(compiler ${gcc} ${BIN}/softcell-spu-g++)
@@ -87,6 +93,9 @@ step("512 zeros" sh -c "head -c 512 /dev/zero > ${lab}/zeros")
 foreach(found "early.c:8 \\(strlen\\): load-in-flight: load of 1 byte at text" "early.c:9 \\(puts\\): load-in-flight" "early.c:10 \\(strdup\\): load-in-flight")
   says(3 "${found}" ${BIN}/softcell spu run --checked ${lab}/early --inout z=${lab}/zeros --arg @z)
 endforeach()
+
+says(0 "" ${BIN}/softcell spu run ${lab}/early --inout z=${lab}/zeros --arg @z --coverage ${lab}/early.info)
+says(0 "^SF:[^\n]*early.c\n$" grep "^SF:" ${lab}/early.info)
 
 # The blocks of the heap are objects like variables.
 file(WRITE ${lab}/heap.c "#include <malloc.h>

@@ -60,6 +60,7 @@ void Checker::begin_run(const KernelImage& image, const StackRange& stack, bool 
   for (const PaddingRange& gap : debug_information_->padding) written_.mark(gap.lsa, gap.bytes);
   in_flight_.clear();
   tag_mask_ = tags_issued_ = 0;
+  idle_waits_.clear();
   is_waiting_ = false;
   stack_is_in_flight_ = false;
   asked_at_ = 0;
@@ -391,6 +392,8 @@ void Checker::check_ranges(CommandInFlight& command) {
       (is_used ? stack_is_in_flight_ : command.frame_was_left) = true;
     }
   }
+  if (command.is_list() && !runs_spu_program() && objects_->in_stack(command.command.list_address().value))
+    stack_is_in_flight_ = true;
   check_overlaps(command);
 }
 
@@ -484,6 +487,18 @@ void Checker::check_frames(Address here, std::uint32_t stack_pointer) {
                  " bytes on the stack has returned, and the next one stores there; in flight: " +
                  describe(command));
     }
+    if (!command.is_list() || command.frame_was_left) continue;
+    const std::uint32_t list = command.command.list_address().value;
+    if (!objects_->in_stack(list)) continue;
+    if (list + command.command.size > stack_pointer) {
+      stack_is_in_flight_ = true;
+      continue;
+    }
+    command.frame_was_left = true;
+    report(Rule::kListInFlight, here,
+           "the function that has the list on the stack has returned, and the next one stores there; in "
+           "flight: " +
+               describe(command));
   }
 }
 
@@ -514,13 +529,22 @@ void Checker::on_tag_update(std::uint32_t condition) {
   is_waiting_ = condition != 0;
   asked_at_ = in_flight_.last_number();
   awaited_ = condition == kAllTags || std::has_single_bit(tag_mask_) ? tag_mask_ : 0;
-  if (!is_waiting_ || (tag_mask_ & tags_issued_) != 0) return;
-  std::string tags;
-  for (std::uint32_t tag = 0; tag < dma::kTagCount; ++tag) {
-    if ((tag_mask_ >> tag & 1u) != 0) tags += (tags.empty() ? "tag " : ", tag ") + std::to_string(tag);
+  // A mask of all tags is no wrong number, and commands of a tag may come later: a loop over two buffers waits for either from the start.
+  if (!is_waiting_ || (tag_mask_ & tags_issued_) != 0 || tag_mask_ == ~0u) return;
+  idle_waits_.try_emplace(to_.engine.position().value, IdleWait{tag_mask_, stack_pointer_});
+}
+
+void Checker::report_idle_waits() {
+  for (const auto& [instruction, wait] : idle_waits_) {
+    if ((wait.tags & tags_issued_) != 0) continue;
+    std::string tags;
+    for (std::uint32_t tag = 0; tag < dma::kTagCount; ++tag) {
+      if ((wait.tags >> tag & 1u) != 0) tags += (tags.empty() ? "tag " : ", tag ") + std::to_string(tag);
+    }
+    stack_pointer_ = wait.stack_pointer;
+    report(Rule::kTagWithoutCommand, {instruction},
+           tags.empty() ? "the tag mask is empty" : tags + ": the program has issued no command of it");
   }
-  report(Rule::kTagWithoutCommand, to_.engine.position(),
-         tags.empty() ? "the tag mask is empty" : tags + ": no command since the last wait");
 }
 
 /// The tag status is there, as its channel's count or its event says, and not yet read: the tags that it waited for are complete.
@@ -536,8 +560,6 @@ ChannelReply Checker::read(std::uint32_t channel) {
   if (reply.fault) return reply;
   if (channel == static_cast<std::uint32_t>(Channel::kMfcRdTagStat)) {
     complete(reply.value);
-    // A wait for any of several promises one of them: the program may still wait for all.
-    if (is_waiting_) tags_issued_ &= ~(reply.value & awaited_);
   }
   if (channel == kEventStatus && (reply.value & dma::Mfc::kTagStatusEvent) != 0) on_tag_status();
   if (channel == kListStallStatus) on_list_stall(reply.value);
@@ -572,6 +594,7 @@ void Checker::on_list_acknowledged(std::uint32_t tag) {
 }
 
 void Checker::end_run() {
+  report_idle_waits();
   if (status_unread_) {
     report(Rule::kAtomicStatusNotRead, status_unread_->issued_at, "the program ends without it",
            status_unread_->command);

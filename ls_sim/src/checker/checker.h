@@ -10,6 +10,7 @@
 #include <array>
 #include <atomic>
 #include <cstddef>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -117,6 +118,10 @@ class Checker final : public ChannelPort, public AccessObserver {
     std::string put_detail = {};  ///< of the finding if such a byte changes
   };
 
+  struct IdleWait {
+    std::uint32_t tags, stack_pointer;
+  };
+
   /// Where a function of the program is, and its stack pointer there.
   struct CallFrame {
     Address instruction;
@@ -153,6 +158,7 @@ class Checker final : public ChannelPort, public AccessObserver {
   void check_frames(Address here, std::uint32_t stack_pointer);
   void complete(std::uint32_t tags);
   void on_tag_update(std::uint32_t condition);
+  void report_idle_waits();
   void on_tag_status();
   void on_list_stall(std::uint32_t tags);
   void on_list_acknowledged(std::uint32_t tag);
@@ -185,7 +191,9 @@ class Checker final : public ChannelPort, public AccessObserver {
   HeapBlocks heap_;
   CommandsInFlight in_flight_;
   std::uint32_t tag_mask_ = 0;
-  std::uint32_t tags_issued_ = 0;    ///< since each was last waited for
+  std::uint32_t tags_issued_ = 0;  ///< the tags of all commands of this run
+  /// By their instructions: waits for tags of which there was no command yet.
+  std::map<std::uint32_t, IdleWait> idle_waits_;
   bool stack_is_in_flight_ = false;  ///< a command may move variables of functions
   bool stack_overflow_known_ = false;
   std::uint32_t stack_pointer_ = 0;  ///< of the access or channel operation that is being looked at

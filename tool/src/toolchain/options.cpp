@@ -257,8 +257,7 @@ class Parser {
       options_.compiler.push_back(word);
     } else if (std::ranges::any_of(kOld, [&](const char* year) { return word.ends_with(year); })) {
       options_.notes.push_back(word + ": C++ is compiled as C++17 here");
-      // Old sources have `register`, which C++17 knows no more and an older standard does not warn of.
-      options_.compiler.insert(options_.compiler.begin(), "-Wno-register");
+      options_.older_cxx = true;
       if (word.find("gnu") == word.npos) options_.cxx_standard = "-std=c++17";
     } else {
       options_.compiler.push_back(word);

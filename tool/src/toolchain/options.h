@@ -29,6 +29,7 @@ struct Options {
   Words compiler;             ///< warnings and options of the language
   /// Of C++ sources, unless `compiler` has another one. Like an SPU's compiler, it knows GNU's words.
   std::string cxx_standard = "-std=gnu++17";
+  bool older_cxx = false;                    ///< -std= names an older C++ than there is
   Words linker;                              ///< -Map and the like, in the form that ld takes
   std::optional<std::uint32_t> stack_bytes;  ///< -Wl,-z,stack-size=BYTES
   bool relocatable = false;                  ///< -r
