@@ -16,6 +16,7 @@ class TemporaryFolder {
   TemporaryFolder(const TemporaryFolder&) = delete;
   TemporaryFolder& operator=(const TemporaryFolder&) = delete;
 
+  /// Where it lies.
   const std::filesystem::path& path() const { return path_; }
 
  private:
