@@ -271,7 +271,7 @@ TEST_F(CheckerTest, AWaitForATagThatHasNoCommandAtAllIsFound) {
 TEST_F(CheckerTest, AListOfAFunctionThatHasReturnedIsFound) {
   const std::uint32_t list = dma::kLocalStoreBytes - 384;
   store(list, 16);
-  issue(MfcOpcode::getl, buffer_, kEa & ~0xFFFFFFFFull | list, 16, 3);
+  issue(MfcOpcode::getl, buffer_, (kEa & ~0xFFFFFFFFull) | list, 16, 3);
   checker_.on_access({{out_}, 4, true, engine_.at, {list - 64}});
   EXPECT_EQ(rules(), Texts{}) << "its function runs, and calls others";
   checker_.on_access({{out_}, 4, true, engine_.at, {list + 16}});

@@ -531,17 +531,18 @@ void Checker::on_tag_update(std::uint32_t condition) {
   awaited_ = condition == kAllTags || std::has_single_bit(tag_mask_) ? tag_mask_ : 0;
   // A mask of all tags is no wrong number, and commands of a tag may come later: a loop over two buffers waits for either from the start.
   if (!is_waiting_ || (tag_mask_ & tags_issued_) != 0 || tag_mask_ == ~0u) return;
-  idle_waits_.try_emplace(to_.engine.position().value, IdleWait{tag_mask_, stack_pointer_});
+  idle_waits_.try_emplace({to_.engine.position().value, tag_mask_}, stack_pointer_);
 }
 
 void Checker::report_idle_waits() {
-  for (const auto& [instruction, wait] : idle_waits_) {
-    if ((wait.tags & tags_issued_) != 0) continue;
+  for (const auto& [wait, stack_pointer] : idle_waits_) {
+    const auto [instruction, mask] = wait;
+    if ((mask & tags_issued_) != 0) continue;
     std::string tags;
     for (std::uint32_t tag = 0; tag < dma::kTagCount; ++tag) {
-      if ((wait.tags >> tag & 1u) != 0) tags += (tags.empty() ? "tag " : ", tag ") + std::to_string(tag);
+      if ((mask >> tag & 1u) != 0) tags += (tags.empty() ? "tag " : ", tag ") + std::to_string(tag);
     }
-    stack_pointer_ = wait.stack_pointer;
+    stack_pointer_ = stack_pointer;
     report(Rule::kTagWithoutCommand, {instruction},
            tags.empty() ? "the tag mask is empty" : tags + ": the program has issued no command of it");
   }

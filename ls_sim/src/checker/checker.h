@@ -16,6 +16,7 @@
 #include <span>
 #include <string>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "commands_in_flight.h"
@@ -118,10 +119,6 @@ class Checker final : public ChannelPort, public AccessObserver {
     std::string put_detail = {};  ///< of the finding if such a byte changes
   };
 
-  struct IdleWait {
-    std::uint32_t tags, stack_pointer;
-  };
-
   /// Where a function of the program is, and its stack pointer there.
   struct CallFrame {
     Address instruction;
@@ -192,8 +189,8 @@ class Checker final : public ChannelPort, public AccessObserver {
   CommandsInFlight in_flight_;
   std::uint32_t tag_mask_ = 0;
   std::uint32_t tags_issued_ = 0;  ///< the tags of all commands of this run
-  /// By their instructions: waits for tags of which there was no command yet.
-  std::map<std::uint32_t, IdleWait> idle_waits_;
+  /// Waits for tags of which there was no command yet, by instruction and mask: the stack pointer of the first.
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> idle_waits_;
   bool stack_is_in_flight_ = false;  ///< a command may move variables of functions
   bool stack_overflow_known_ = false;
   std::uint32_t stack_pointer_ = 0;  ///< of the access or channel operation that is being looked at
