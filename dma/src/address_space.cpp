@@ -271,6 +271,9 @@ AddressSpace::Registry::const_iterator AddressSpace::last_at_or_below(EffectiveA
 
 std::string AddressSpace::describe_unmapped(EffectiveAddress ea) const {
   if (!is_host_program() && !is_effective_address(ea.value)) {
+    if (ea.value == 0)
+      return "EA is 0, where no memory lies; was the address of the data given (argp, --arg, a field of the "
+             "job)?";
     if (ea.value >> 32 == 0) {
       return "the upper word of EA is 0, that of main storage is " + hex(kMainMemoryBase.value >> 32) +
              "; was MFC_EAH left out?";

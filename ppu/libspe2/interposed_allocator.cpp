@@ -1,10 +1,11 @@
-// An allocator that stands before the C library's: the same blocks, and a list of them.
+// Interposes malloc() and its relatives: calls those of the C library and records each block.
 //
 // Everything here may run within malloc, before main() and in any thread: it allocates nothing but pages of its own.
 
 #include "interposed_allocator.h"
 
 #include <malloc.h>
+#include <pthread.h>
 #include <sys/mman.h>
 #include <unistd.h>
 
@@ -15,6 +16,7 @@
 #include <map>
 #include <mutex>
 #include <new>
+#include <optional>
 
 extern "C" {
 void* __libc_malloc(std::size_t);
@@ -73,17 +75,24 @@ using Blocks =
 
 /// The blocks of the program, by address; those that were freed stay until others take their place.
 struct Heap {
-  std::mutex mutex;  // guards all below but the generation
+  std::mutex mutex;                  // guards all below but the generation
+  std::atomic<pthread_t> forking{};  // the thread that is in fork(), which holds the mutex there
   Blocks blocks;
   std::uint64_t begin = reinterpret_cast<std::uint64_t>(sbrk(0));
   std::atomic<std::uint64_t> generation{1};
+
+  /// Locks the mutex. Handlers of fork() that allocate run in a thread that holds it already.
+  [[nodiscard]] std::unique_lock<std::mutex> lock() {
+    return forking.load(std::memory_order_relaxed) == pthread_self() ? std::unique_lock<std::mutex>()
+                                                                     : std::unique_lock(mutex);
+  }
 
   Heap() { mallopt(M_ARENA_MAX, 1); }  // all of it lies where sbrk() makes room, or in pages of its own
 
   void add(void* pointer, std::size_t bytes, void* caller) {
     if (pointer == nullptr) return;
     const auto address = reinterpret_cast<std::uint64_t>(pointer);
-    const std::lock_guard lock(mutex);
+    const auto locked = lock();
     // The dead blocks that lay there are forgotten.
     auto at = blocks.lower_bound(address);
     if (at != blocks.begin()) {
@@ -93,13 +102,16 @@ struct Heap {
     while (at != blocks.end() && at->first < address + (bytes == 0 ? 1 : bytes)) at = blocks.erase(at);
     blocks.emplace(address, Block{bytes, reinterpret_cast<std::uint64_t>(caller), true});
   }
-  void end(void* pointer) {
-    if (pointer == nullptr) return;
-    const std::lock_guard lock(mutex);
+  /// @return  the block as it was; nothing: there is none.
+  std::optional<Block> end(void* pointer) {
+    if (pointer == nullptr) return std::nullopt;
+    const auto locked = lock();
     const auto found = blocks.find(reinterpret_cast<std::uint64_t>(pointer));
-    if (found == blocks.end()) return;
+    if (found == blocks.end()) return std::nullopt;
+    const Block was = found->second;
     found->second.live = false;
     generation.fetch_add(1, std::memory_order_release);
+    return was;
   }
 };
 
@@ -109,9 +121,22 @@ Heap& heap() {
   return *made;
 }
 
+/// Over fork() no other thread is in the list: the child, which has none, would wait for it for ever.
+[[gnu::constructor]] void keep_list_over_fork() {
+  const auto release = [] {
+    heap().forking.store({}, std::memory_order_relaxed);
+    heap().mutex.unlock();
+  };
+  const auto hold = [] {
+    heap().mutex.lock();
+    heap().forking.store(pthread_self(), std::memory_order_relaxed);
+  };
+  pthread_atfork(hold, release, release);
+}
+
 int last_at_or_below(std::uint64_t address, SoftcellAllocation* block) {
   Heap& all = heap();
-  const std::lock_guard lock(all.mutex);
+  const auto locked = all.lock();
   const auto above = all.blocks.upper_bound(address);
   if (above == all.blocks.begin()) return 0;
   const auto& [begin, found] = *std::prev(above);
@@ -170,10 +195,10 @@ SC_EXPORT void free(void* pointer) {
 }
 
 SC_EXPORT void* realloc(void* pointer, std::size_t bytes) {
-  heap().end(pointer);
+  const std::optional<Block> was = heap().end(pointer);
   void* const moved = __libc_realloc(pointer, bytes);
-  if (moved == nullptr && bytes != 0 && pointer != nullptr) {
-    heap().add(pointer, malloc_usable_size(pointer), __builtin_return_address(0));  // it stays as it was
+  if (moved == nullptr && bytes != 0 && was && was->live) {  // it stays as it was
+    heap().add(pointer, was->bytes, reinterpret_cast<void*>(was->caller));
     return nullptr;
   }
   return add(moved, bytes, __builtin_return_address(0));
@@ -191,6 +216,15 @@ SC_EXPORT void* valloc(std::size_t bytes) {
   return add(__libc_memalign(kPageBytes, bytes), bytes, __builtin_return_address(0));
 }
 
+SC_EXPORT void* pvalloc(std::size_t bytes) {
+  const std::size_t whole_pages = (bytes + kPageBytes - 1) / kPageBytes * kPageBytes;
+  if (whole_pages < bytes) {
+    errno = ENOMEM;
+    return nullptr;
+  }
+  return add(__libc_memalign(kPageBytes, whole_pages), whole_pages, __builtin_return_address(0));
+}
+
 SC_EXPORT int posix_memalign(void** pointer, std::size_t alignment, std::size_t bytes) {
   if (alignment % sizeof(void*) != 0 || alignment == 0 || (alignment & (alignment - 1)) != 0) return EINVAL;
   void* const made = __libc_memalign(alignment, bytes);
@@ -201,6 +235,6 @@ SC_EXPORT int posix_memalign(void** pointer, std::size_t alignment, std::size_t 
 
 }  // extern "C"
 
-// Who calls `new` is wanted, not operator new itself; all other forms call these two or memalign.
+// Records the caller of `new` and not operator new itself. All other forms call these two or memalign.
 SC_EXPORT void* operator new(std::size_t bytes) { return add_new(bytes, __builtin_return_address(0)); }
 SC_EXPORT void* operator new[](std::size_t bytes) { return add_new(bytes, __builtin_return_address(0)); }

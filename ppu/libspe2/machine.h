@@ -37,7 +37,7 @@ class Machine {
   /// Says on standard error why something failed.
   static void complain(std::string_view what);
 
-  /// Ends the process at once, with its reports: the program itself may be waiting for ever.
+  /// Ends the process at once, with its reports, because the program may never end by itself.
   [[noreturn]] void end_process(int status);
   /// Whether the end of the process ends all runs.
   bool is_ending() const { return ending_thread_ != 0; }
@@ -48,10 +48,12 @@ class Machine {
 
   void count_context();
   void count_run() { runs_.fetch_add(1, std::memory_order_relaxed); }
-  /// A run has ended, and report() has been told of its fault. The report is brought up to date with what was found: a
-  /// program may end without its exit handlers, by _exit() or a signal.
+  /// The run that was counted could not begin.
+  void uncount_run() { runs_.fetch_sub(1, std::memory_order_relaxed); }
+  /// Call it when a run has ended, after report(). It brings the report up to date with what was found: a program may end
+  /// without its exit handlers, by _exit() or a signal.
   void end_run();
-  /// Adds up what a context has moved that is about to go. One that has stopped does not go on.
+  /// Adds the transfers of a context that is about to be destroyed to the statistics. One that has stopped does not go on.
   void count_last(ls_sim::SpeContext& context);
 
  private:

@@ -1,6 +1,6 @@
 #pragma once
-// What the library hands to the program as pointers: they are looked up, never followed, so that a pointer to
-// nothing or to what is gone is an error and not a crash.
+// The objects that the program holds by pointers. The library looks a pointer up in a table before it uses it, so a wrong
+// or old pointer is an error and no crash.
 
 #include <pthread.h>
 #include <atomic>
@@ -42,7 +42,7 @@ struct spe_context {
   std::unique_ptr<softcell::ls_sim::SpeContext> spe;
 
   std::atomic<bool> busy{false};       ///< a thread is in spe_context_run() or spe_program_load()
-  std::atomic<bool> destroyed{false};  ///< whoever waits for it returns
+  std::atomic<bool> destroyed{false};  ///< threads that wait for it return
   std::atomic<unsigned int> tags{0};   ///< of proxy commands since the tag status was read
   std::mutex in_mbox;  ///< held while values are written, so that those of one call stay together
 
@@ -124,8 +124,8 @@ inline int fail(int error) {
   return -1;
 }
 
-/// While the object lives, the calling thread is not cancelled, but where Waits says so: its place in a wait must not be
-/// left.
+/// While the object lives, the calling thread cannot be cancelled, except in the waits that `Waits` names: a thread that is
+/// cancelled elsewhere would leave the list of waiting threads wrong.
 class NotCancelled {
  public:
   NotCancelled() {
@@ -151,7 +151,7 @@ class NotCancelled {
 /// point: only a thread that may be cancelled anywhere leaves it before it has stopped.
 enum class Waits : std::uint8_t { kNo, kForEvents, kForARun };
 
-/// work(), which may throw, for a caller in C. @param failure  the result then, with errno set.
+/// Calls work() for a caller in C: turns exceptions into errno. @param failure  the result then.
 template <class Result, class Work>
 Result shielded(Result failure, Work&& work, Waits waits = Waits::kNo) {
   const NotCancelled here;
@@ -169,7 +169,7 @@ Result shielded(Result failure, Work&& work, Waits waits = Waits::kNo) {
   return failure;
 }
 
-/// work(*context) of a context that there is, else ESRCH.
+/// Calls work(context); ESRCH if there is no such context.
 template <class Work>
 int with_context(spe_context_ptr_t spe, Work&& work, Waits waits = Waits::kNo) {
   return shielded(

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "callbacks.h"
+#include "cause.h"
 #include "libspe2.h"
 #include "object.h"
 #include "softcell/dma/addresses.h"
@@ -17,7 +18,7 @@
 #include "softcell/ls_sim/channels.h"
 
 using softcell::dma::Fault;
-using softcell::dma::Rule;
+using softcell::libspe2::Cause;
 using softcell::libspe2::fail;
 using softcell::libspe2::Machine;
 using softcell::libspe2::Waits;
@@ -29,7 +30,7 @@ using softcell::ls_sim::RunResult;
 
 namespace {
 
-/// Stops that nobody has read: as many as fit into the pipe that the original keeps them in; then the oldest is lost.
+/// How many unread stops are kept; then the oldest is dropped. The original keeps them in a pipe of 64 KB.
 constexpr std::size_t kMostStops = 65536 / sizeof(spe_stop_info_t);
 constexpr unsigned int kRunFlags = SPE_RUN_USER_REGS | SPE_NO_CALLBACKS;
 constexpr int kNoHandler = -1;                // what a call without a handler has failed with
@@ -53,42 +54,27 @@ Outcome failure(unsigned int reason, int what, int spu_status, int error) {
   return outcome;
 }
 
-/// What the hardware and the operating system would have made of it.
+/// What spe_context_run() returns on the Cell's Linux for this fault.
 Outcome outcome_of(const Fault& fault) {
-  switch (fault.rule) {
-    case Rule::kKernelHalt:
-      return failure(SPE_RUNTIME_ERROR, SPE_SPU_HALT, kStatusHalted, EFAULT);
-    case Rule::kIllegalInstruction:
-      return failure(SPE_RUNTIME_ERROR, SPE_SPU_INVALID_INSTR, SPE_SPU_INVALID_INSTR, EFAULT);
-    case Rule::kIllegalChannel:
-      return failure(SPE_RUNTIME_ERROR, SPE_SPU_INVALID_CHANNEL, SPE_SPU_INVALID_CHANNEL, EFAULT);
-    case Rule::kLsaAlignment:
-    case Rule::kEaAlignment:
-    case Rule::kLowBitsDiffer:
-    case Rule::kListAddress:
-    case Rule::kListElementAlignment:
-    case Rule::kAtomicAlignment:
-    case Rule::kSizeNotLegal:
-    case Rule::kListElementSize:
+  switch (cause_of(fault.rule)) {
+    case Cause::kDmaAlignment:
       return failure(SPE_RUNTIME_EXCEPTION, SPE_DMA_ALIGNMENT, -1, EIO);
-    case Rule::kEaNotMapped:
-      return failure(SPE_RUNTIME_EXCEPTION, SPE_DMA_SEGMENTATION, -1, EIO);
-    case Rule::kEaNotReadable:
-    case Rule::kEaNotWritable:
-    case Rule::kEaOutsideAllocation:
-    case Rule::kRegisterAccess:
-      return failure(SPE_RUNTIME_EXCEPTION, SPE_DMA_STORAGE, -1, EIO);
-    case Rule::kUnknownCommand:
-    case Rule::kProxyFormOnly:
-    case Rule::kTagOutOfRange:
-    case Rule::kSizeZero:
-    case Rule::kLsaOutOfRange:
-    case Rule::kListSize:
-    case Rule::kSignalCommand:
+    case Cause::kDmaCommand:
       return failure(SPE_RUNTIME_EXCEPTION, SPE_INVALID_DMA, -1, EIO);
-    default:  // what only softcell notices
-      return failure(SPE_RUNTIME_FATAL, EFAULT, -1, EFAULT);
+    case Cause::kSegment:
+      return failure(SPE_RUNTIME_EXCEPTION, SPE_DMA_SEGMENTATION, -1, EIO);
+    case Cause::kStorage:
+      return failure(SPE_RUNTIME_EXCEPTION, SPE_DMA_STORAGE, -1, EIO);
+    case Cause::kHalt:
+      return failure(SPE_RUNTIME_ERROR, SPE_SPU_HALT, kStatusHalted, EFAULT);
+    case Cause::kInstruction:
+      return failure(SPE_RUNTIME_ERROR, SPE_SPU_INVALID_INSTR, SPE_SPU_INVALID_INSTR, EFAULT);
+    case Cause::kChannel:
+      return failure(SPE_RUNTIME_ERROR, SPE_SPU_INVALID_CHANNEL, SPE_SPU_INVALID_CHANNEL, EFAULT);
+    case Cause::kOnlySoftcell:
+      break;
   }
+  return failure(SPE_RUNTIME_FATAL, EFAULT, -1, EFAULT);
 }
 
 Outcome outcome_of(const RunResult& result) {
@@ -160,8 +146,16 @@ std::optional<ContextStop> begin_or_go_on(spe_context& context, unsigned int ent
     if (!goes_on && entry != SPE_DEFAULT_ENTRY && entry != context.image->entry) return std::nullopt;
     context.goes_on = false;
   }
+  Machine::get().count_run();
   return goes_on ? context.spe->resume() : context.spe->run(arguments);
 }
+
+struct RunEnd {
+  RunEnd() = default;
+  ~RunEnd() { Machine::get().end_run(); }
+  RunEnd(const RunEnd&) = delete;
+  RunEnd& operator=(const RunEnd&) = delete;
+};
 
 int run(spe_context_ptr_t spe, spe_context& context, unsigned int* entry, unsigned int flags, void* argp,
         void* envp, spe_stop_info_t* stopinfo) {
@@ -170,24 +164,27 @@ int run(spe_context_ptr_t spe, spe_context& context, unsigned int* entry, unsign
     if (context.image == nullptr) return fail(ENOEXEC);
   }
   Machine::get().stay_if_ending();
-  Machine::get().count_run();
   std::optional<ContextStop> stop;
   try {
     stop = begin_or_go_on(context, *entry, arguments_of(spe, flags, argp, envp));
   } catch (const std::runtime_error& error) {
     Machine::complain(error.what());
+    Machine::get().uncount_run();
     return fail(EAGAIN);
   }
   if (!stop) return fail(EINVAL);
-  const Outcome outcome = answer_calls(context, *stop, (flags & SPE_NO_CALLBACKS) == 0);
-  Machine::get().stay_if_ending();
-  if (stop->result.fault) Machine::get().report(*stop->result.fault);
-  Machine::get().end_run();
+  const Outcome outcome = [&] {
+    const RunEnd end;  // also when the handler of a callback throws
+    Outcome answered = answer_calls(context, *stop, (flags & SPE_NO_CALLBACKS) == 0);
+    Machine::get().stay_if_ending();
+    if (stop->result.fault) Machine::get().report(*stop->result.fault);
+    return answered;
+  }();
   *entry = stop->next.value;
   {
     const std::lock_guard lock(context.mutex);
     context.goes_on = stop->goes_on;
-    // Whoever asks for a command that the MFC cannot execute does not stop by itself.
+    // A command that the MFC refuses does not stop the SPU, so its status is that of a running one.
     context.registers.spu_status =
         outcome.info.spu_status < 0 ? 0 : static_cast<std::uint32_t>(outcome.info.spu_status);
     context.next_entry = stop->next.value;

@@ -1,5 +1,5 @@
 #pragma once
-// How the environment has a libspe2 program run.
+// Settings of a libspe2 program, from environment variables.
 
 #include <chrono>
 #include <string>

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <exception>
 #include <mutex>
 #include <optional>
 #include <stdexcept>
@@ -16,6 +17,7 @@
 #include <thread>
 #include <vector>
 
+#include "ppu/libspe2/cause.h"
 #include "softcell/base/assert.h"
 #include "softcell/dma/addresses.h"
 #include "softcell/dma/fault.h"
@@ -36,34 +38,29 @@ constexpr std::chrono::milliseconds kInterruptAgain{1};
 
 u32 read_mailbox(SpuThread& thread) { return thread.context->problem_state().read_out_mbox().value_or(0); }
 
-/// What the cause of an exception is called in lv2's events.
+/// What lv2's events call the cause of an exception.
 u32 exception_of(const dma::Fault& fault) {
-  using dma::Rule;
-  switch (fault.rule) {
-    case Rule::kLsaAlignment:
-    case Rule::kEaAlignment:
-    case Rule::kLowBitsDiffer:
-    case Rule::kListAddress:
-    case Rule::kAtomicAlignment:
-    case Rule::kSizeNotLegal:
+  using libspe2::Cause;
+  switch (libspe2::cause_of(fault.rule)) {
+    case Cause::kDmaAlignment:
       return SPU_EXCEPTION_DMA_ALIGNMENT;
-    case Rule::kUnknownCommand:
-    case Rule::kTagOutOfRange:
+    case Cause::kDmaCommand:
       return SPU_EXCEPTION_DMA_COMMAND;
-    case Rule::kEaNotMapped:
+    case Cause::kSegment:
       return SPU_EXCEPTION_MFC_SEGMENT;
-    case Rule::kEaNotReadable:
-    case Rule::kEaNotWritable:
-    case Rule::kEaOutsideAllocation:
+    case Cause::kStorage:
       return SPU_EXCEPTION_MFC_STORAGE;
-    case Rule::kKernelHalt:
+    case Cause::kHalt:
       return SPU_EXCEPTION_HALT;
-    default:
-      return SPU_EXCEPTION_SPU_ERROR;
+    case Cause::kInstruction:
+    case Cause::kChannel:
+    case Cause::kOnlySoftcell:
+      break;
   }
+  return SPU_EXCEPTION_SPU_ERROR;
 }
 
-/// The end of one thread of the group by a fault or by a stop that lv2 does not know.
+/// Ends the group because a thread of it has faulted or stopped with an unknown code.
 void fail(Group& group, const SpuThread& thread, const dma::Fault& fault, u32 exception) {
   Lv2& lv2 = Lv2::get();
   std::shared_ptr<Queue> queue;
@@ -79,7 +76,7 @@ void fail(Group& group, const SpuThread& thread, const dma::Fault& fault, u32 ex
   end_group(group, {SPU_THREAD_GROUP_JOIN_TERMINATED, exception});
 }
 
-/// An event for the SPU thread, of the queue whose number is in its mailbox.
+/// Sends the SPU thread the next event of the queue whose number is in its mailbox.
 /// @return  false: the group ends meanwhile.
 bool answer_receive(const Group& group, SpuThread& thread, bool waits) {
   Lv2& lv2 = Lv2::get();
@@ -156,18 +153,22 @@ void tell_service(Group& group) {
   Machine::get().contexts().wake();
 }
 
+/// Ends the group because the host has failed.
+void end_by_exception(Group& group, const std::exception& error) {
+  Machine::complain(error.what());
+  const std::lock_guard lock(Lv2::get().mutex);
+  end_group(group, {SPU_THREAD_GROUP_JOIN_TERMINATED, SPU_EXCEPTION_NO_VALUE});
+}
+
 /// On the thread's own host thread.
 void run_thread(Group& group, SpuThread& thread) {
-  Lv2& lv2 = Lv2::get();
   try {
     ContextStop stop = thread.context->run(thread.arguments);
     thread.has_stopped = true;
     Machine::get().contexts().wake();
     while (answer_stop(group, thread, stop)) stop = thread.context->resume();
   } catch (const std::exception& error) {
-    Machine::complain(error.what());
-    const std::lock_guard lock(lv2.mutex);
-    end_group(group, {SPU_THREAD_GROUP_JOIN_TERMINATED, SPU_EXCEPTION_NO_VALUE});
+    end_by_exception(group, error);
   }
   thread.ended = true;
   tell_service(group);
@@ -202,8 +203,12 @@ void serve(const std::shared_ptr<Group>& group) {
     bool any = false;
     for (const auto& thread : group->threads) {
       while (const auto message = thread->context->problem_state().read_out_intr_mbox()) {
-        answer_message(*thread, *message);
         any = true;
+        try {
+          answer_message(*thread, *message);
+        } catch (const std::exception& error) {
+          end_by_exception(*group, error);
+        }
       }
     }
     return any;

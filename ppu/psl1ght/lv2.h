@@ -137,7 +137,7 @@ class Lv2 {
   /// Puts an event into a queue, with the lock. @return  kOk, or kBusy: it is full
   std::uint32_t send(Queue& queue, const sys_event_t& event);
 
-  /// Takes an event, and waits for one. With the lock.
+  /// Removes the oldest event of the queue; waits for one first. With the lock.
   /// @param stopped  looked at whenever something has changed; then the wait ends with kCancelled.
   template <class Stopped>
   std::uint32_t receive(std::unique_lock<std::mutex>& lock, const std::shared_ptr<Queue>& from,
@@ -171,7 +171,7 @@ void report_fault(const dma::Fault& fault, bool handled);
 /// Says why a function is not there. @return  kNotSupported
 std::uint32_t refuse(std::string_view function, std::string_view reason);
 
-/// work() of a function of the interface, which throws nothing.
+/// Calls work() for a function of the C interface: turns exceptions into lv2's error codes.
 template <class Work>
 s32 call(Work&& work) {
   try {

@@ -37,7 +37,8 @@ TEST_P(GpuSkin, GivesThePicturesOfTheSpes) {
   constexpr int kPictures = 6, kFramesBetween = 15;
   constexpr std::size_t kOutlinePixels = 12;
   const Scene scene = load_scene_3d(GetParam());
-  if (kSlowBuild && scene.name != "arena") GTEST_SKIP() << "with sanitizers, which have arena";
+  if (kSlowBuild && scene.name != "arena")
+    GTEST_SKIP() << "too slow with sanitizers, which run it for the scene arena";
   const auto context = render::create_offscreen_context();
   Skinned spe(scene, Skin::kSpe, *context), gpu(scene, Skin::kGpu, *context);
   int within = 0;

@@ -130,7 +130,8 @@ Scene standing(const Held& held) {
 class HeldBody : public testing::TestWithParam<Held> {};
 
 TEST_P(HeldBody, IsLiftedCarriedAndThrownAndNotTorn) {
-  if (kSlowBuild && GetParam().cells > 14) GTEST_SKIP() << "with sanitizers, which have the small ones";
+  if (kSlowBuild && GetParam().cells > 14)
+    GTEST_SKIP() << "too slow with sanitizers, which run the small bodies";
   const Scene scene = standing(GetParam());
   Simulation3d simulation(scene, {.spes = 2});
   const ppu::SoftBody<3>& body = simulation.soft_body(0);

@@ -157,7 +157,7 @@ TEST(LiveSettings, YieldAndCreepSetWhatTheySayIn2d) {
 }
 
 TEST(LiveSettings, ABodyOfTooManyParticlesStaysElastic) {
-  if (kSlowBuild) GTEST_SKIP() << "half a minute with sanitizers, for the scene to be made";
+  if (kSlowBuild) GTEST_SKIP() << "to make the scene takes half a minute with sanitizers";
   const Scene scene = load_scene_3d("big");
   Simulation3d run(scene, {.spes = 2});
   ASSERT_GT(run.particles(), 4096u);

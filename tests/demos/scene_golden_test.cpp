@@ -28,7 +28,7 @@ void PrintTo(const Moment& m, std::ostream* out) { *out << m.scene << " " << m.f
 class SceneGolden : public testing::TestWithParam<Moment> {};
 
 TEST_P(SceneGolden, LooksAsItDid) {
-  constexpr const char* kSkipped = "with sanitizers, which have the early moments of small scenes";
+  constexpr const char* kSkipped = "too slow with sanitizers, which run the early moments of small scenes";
   const std::string name = GetParam().scene;
   if (kSlowBuild && (GetParam().frame > 50 || name == "big")) GTEST_SKIP() << kSkipped;
   const Scene scene = load_scene_3d(name);

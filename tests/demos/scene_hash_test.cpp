@@ -63,7 +63,8 @@ std::map<std::string, std::string> stored_rows() {
 class SceneHash : public testing::TestWithParam<SceneListing> {};
 
 TEST_P(SceneHash, IsTheStoredOne) {
-  if (kSlowBuild && GetParam().name == "big") GTEST_SKIP() << "with sanitizers, half a minute";
+  if (kSlowBuild && GetParam().name == "big")
+    GTEST_SKIP() << "the scene big takes half a minute with sanitizers, which run the other scenes";
   const int frames = frames_of(GetParam());
   const std::string now = row(GetParam(), frames, hash_after(GetParam(), frames));
   EXPECT_EQ(now, stored_rows()[GetParam().name]) << kHowToRenew;
@@ -72,10 +73,11 @@ TEST_P(SceneHash, IsTheStoredOne) {
 /// Kernels as a compiler for the SPU has made them, each instruction interpreted: the same bits.
 TEST_P(SceneHash, IsTheStoredOneByInterpretedKernels) {
   const SimulationOptions interpreted{.machine = ls_sim::Machine::kSpu};
-  if (GetParam().name == "big") GTEST_SKIP() << "half a minute; BothBuilds has tiles";
+  if (GetParam().name == "big")
+    GTEST_SKIP() << "the scene big takes half a minute; the tests BothBuilds run its kernels, those of tiles";
   // Nothing that a sanitizer finds depends on the scene, so long as all kernels of bodies and contacts run.
   if (kSlowBuild && GetParam().dimension == 3 && GetParam().name != "arena")
-    GTEST_SKIP() << "minutes; arena has these kernels";
+    GTEST_SKIP() << "minutes with sanitizers, which run the scene arena with the same kernels";
   // Those whose rows would take many seconds: as many frames as show all kernels.
   std::map<std::string, int> shorter{{"claw", 12},    {"jellies", 12}, {"penguins", 1}, {"pile", 30},
                                      {"pillows", 20}, {"ragdoll", 30}, {"tyres", 20}};

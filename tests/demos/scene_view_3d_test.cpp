@@ -42,7 +42,8 @@ void PrintTo(const Drawn& d, std::ostream* out) { *out << d.scene << ' ' << d.se
 class ScenesIn3d : public testing::TestWithParam<Drawn> {};
 
 TEST_P(ScenesIn3d, LookAsIfAllWereDrawn) {
-  if (kSlowBuild && GetParam().first > 10) GTEST_SKIP() << "with sanitizers, which have the early ones";
+  if (kSlowBuild && GetParam().first > 10)
+    GTEST_SKIP() << "too slow with sanitizers, which run the early moments";
   const Scene scene = load_scene_3d(GetParam().scene);
   Simulation3d simulation(scene, {});
   for (int frame = 0; frame < GetParam().first; ++frame) simulation.step();

@@ -46,7 +46,7 @@ TEST_P(FrameTimesOf, ThePpuAreTheSumOfItsPartsAndNoMoreThanTheThreadHasUsed) {
 
 /// 20 bodies of five shapes on each other. Before they sleep, gravity and contacts alone bring them to rest.
 TEST(Simulation3d, APileComesToRestAndSleeps) {
-  if (kSlowBuild) GTEST_SKIP() << "with sanitizers, which have the first 240 frames of it";
+  if (kSlowBuild) GTEST_SKIP() << "too slow with sanitizers, which run the first 240 frames of the scene";
   Simulation3d simulation(load_scene_3d("pile"), {.spes = 2});
   const auto asleep = [&] {
     std::size_t bodies = 0;
@@ -71,7 +71,7 @@ TEST(Simulation3d, APileComesToRestAndSleeps) {
 /// 0.3 to 0.45 cells are measured, at a penguin's beak below its wing; 0.1 would be right. It was 1.5 while parts of a penguin
 /// within its body were a surface for others.
 TEST(Simulation3d, WhatIsDrawnOfAPileDoesNotLieDeepInEachOther) {
-  if (kSlowBuild) GTEST_SKIP() << "with sanitizers it takes minutes";
+  if (kSlowBuild) GTEST_SKIP() << "it takes minutes with sanitizers";
   Simulation3d simulation(load_scene_3d("pile"), {.spes = 2});
   step(simulation, 180);
   for (int sample = 0; sample < 4; ++sample) {

@@ -126,7 +126,7 @@ TEST(Soak, NothingIsLostInALongTime) {
 /// As the report says: with a gravity of 300 m/s^2 soft bodies go on as always, as long as they cannot gain
 /// speed by a fall.
 TEST(Soak, AGravityOf300Holds) {
-  if (kSlowBuild) GTEST_SKIP() << "with sanitizers, which have seconds of the arena";
+  if (kSlowBuild) GTEST_SKIP() << "too slow with sanitizers, which run some seconds of the arena";
   Simulation3d simulation(arena(), {});
   using Event = InputEvent<3>;
   simulation.step(std::vector<Event>{{.action = Action::kTilt, .value = {0, 0, 0}}});

@@ -145,7 +145,8 @@ TEST(AddressSpace, FaultsOutsideOfBuffersAndSaysWhereThatIs) {
   expect_fault(space.resolve(ea + 256, 16, SpeAccess::kRead), Rule::kEaNotMapped,
                "nearest below is 'a' (256 bytes at 0x5EA010000000), 0 bytes past its end");
   expect_fault(space.resolve({ea.value & 0xFFFFFFFF}, 16, SpeAccess::kRead), Rule::kEaNotMapped, "MFC_EAH");
-  expect_fault(space.resolve({0}, 16, SpeAccess::kRead), Rule::kEaNotMapped, "MFC_EAH");
+  expect_fault(space.resolve({0}, 16, SpeAccess::kRead), Rule::kEaNotMapped,
+               "was the address of the data given");
   expect_fault(space.resolve({0x7FFF'1234'5670}, 16, SpeAccess::kRead), Rule::kEaNotMapped, "host pointer");
   expect_fault(space.resolve({~std::uint64_t{15}}, 16, SpeAccess::kRead), Rule::kEaNotMapped, "host pointer");
 }

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "../support/contract.h"
 #include "softcell/dma/address_space.h"
@@ -51,6 +52,15 @@ TEST(DmaContractsDeathTest, ABufferHasNoElementPastItsEnd) {
   const Buffer<float> buffer(space, "four", 4);
   EXPECT_EQ(buffer.ea(4).value, buffer.ea().value + 16) << "where the elements end may be asked";
   SC_EXPECT_VIOLATES(buffer.ea(5), "element 5 of a buffer of 4\n");
+}
+
+TEST(DmaContractsDeathTest, ABufferIsNotReadBehindItsEnd) {
+  AddressSpace space;
+  Buffer<float> buffer(space, "four", 4);
+  buffer[3] = 1;
+  SC_EXPECT_VIOLATES(buffer[4] = 1, "element 4 of a buffer of 4\n");
+  SC_EXPECT_VIOLATES(static_cast<void>(std::as_const(buffer)[4]), "element 4 of a buffer of 4\n");
+  SC_EXPECT_VIOLATES(Buffer<float>()[0] = 1, "element 0 of a buffer of 0\n");
 }
 
 TEST(DmaContractsDeathTest, AnAccessHasBytes) {

@@ -269,7 +269,9 @@ TEST(SpeRun, RulesThatAProgramBreaksAreStopReasonsAndMessages) {
        {Case{1, ea, SPE_RUNTIME_EXCEPTION, SPE_DMA_ALIGNMENT, "ea-alignment"},
         Case{2, 0x7000'0000'0000, SPE_RUNTIME_EXCEPTION, SPE_DMA_SEGMENTATION, "ea-not-mapped"},
         Case{3, read_only, SPE_RUNTIME_EXCEPTION, SPE_DMA_STORAGE, "ea-not-writable"},
-        Case{4, ea, SPE_RUNTIME_EXCEPTION, SPE_INVALID_DMA, "tag-out-of-range"}}) {
+        Case{4, ea, SPE_RUNTIME_EXCEPTION, SPE_INVALID_DMA, "tag-out-of-range"},
+        Case{12, ea, SPE_RUNTIME_EXCEPTION, SPE_INVALID_DMA, "size-zero"},
+        Case{13, ea, SPE_RUNTIME_EXCEPTION, SPE_DMA_ALIGNMENT, "atomic-alignment"}}) {
     Context context(&breaks_rules);
     testing::internal::CaptureStderr();
     EXPECT_FAILS(context.run(what, at), EIO);

@@ -45,6 +45,17 @@ TEST(RunVerb, CountsWhatContextsHaveMovedThatTheProgramHasNotDestroyed) {
   }
 }
 
+TEST(RunVerb, CountsOnlyRunsThatHaveBegun) {
+  const CommandResult run = run_softcell("run -- " + kForgets + " 0 wrong_entry");
+  EXPECT_TRUE(has(run, "status 0; 1 SPE context, 1 run, ")) << run.output;
+}
+
+TEST(RunVerb, LosesNoFindingOfARunThatAnExceptionLeaves) {
+  const CommandResult run = run_softcell("run --checked -- " LIBSPE2_PROGRAMS "/libspe2_throws_in_a_call");
+  EXPECT_EQ(run.status, 3) << run.output;
+  EXPECT_TRUE(has(run, "load-in-flight")) << run.output;
+}
+
 TEST(RunVerb, EndsAsTheProgramDoes) {
   EXPECT_EQ(run_softcell("run -- " + kForgets + " 17").status, 17);
   EXPECT_EQ(run_softcell("run -- sh -c 'kill -9 $$'").status, 137);
@@ -65,6 +76,10 @@ TEST(RunVerb, EndsAsTheProgramDoes) {
   EXPECT_EQ(unknown.status, 1);
   EXPECT_TRUE(has(unknown, "softcell: cannot run no_such_program: no folder of PATH has it"))
       << unknown.output;
+}
+
+TEST(RunVerb, RunsAlthoughTMPDIRNamesNoFolder) {
+  EXPECT_EQ(run_shell("TMPDIR=/there/is/none " SOFTCELL_COMMAND " run -- true").status, 0);
 }
 
 TEST(RunVerb, NamesTheLibraryThatIsNotInstalled) {
@@ -127,6 +142,11 @@ TEST(RunVerb, SeedsTellWhatDependsOnTheOrder) {
       "the outcome depends on the order of transfers or SPEs; see it again with softcell run --dma random:"))
       << run.output;
   EXPECT_TRUE(has(run, ", beside seed 1: line 1 of its output is '")) << run.output;
+  const std::string allocations = SC_ADDRESS_SANITIZER ? "" : " --allocations";
+  const CommandResult otherwise =
+      run_softcell("run --seeds 30 --quiet --deadline 25000 --checked" + allocations + " -- " + kForgets);
+  EXPECT_TRUE(has(otherwise, " --turns --checked" + allocations + " --deadline 25000 -- " + kForgets + "\n"))
+      << otherwise.output;
   const CommandResult good = run_softcell("run --seeds 5 --quiet -- " + kPingPong);
   EXPECT_EQ(good.status, 0) << good.output;
   EXPECT_TRUE(has(good, "softcell: 5 seeds: ")) << good.output;
@@ -175,6 +195,14 @@ TEST(RunVerb, HoldsTransfersAgainstTheBlocksOfTheHeap) {
   const CommandResult mapped =
       run_softcell("run --allocations -- " LIBSPE2_PROGRAMS "/libspe2_maps_a_freed_block");
   EXPECT_EQ(mapped.status, 0) << "the pages are the program's again: " << mapped.output;
+}
+
+TEST(RunVerb, ChildrenOfAForkAllocateWhileOtherThreadsDo) {
+  if (SC_ADDRESS_SANITIZER) GTEST_SKIP() << "the sanitizer has an allocator of its own";
+  const CommandResult run =
+      run_softcell("run --allocations -- " LIBSPE2_PROGRAMS "/libspe2_forks_while_it_allocates");
+  EXPECT_EQ(run.status, 0) << run.output;
+  EXPECT_TRUE(has(run, "ok\n")) << run.output;
 }
 
 TEST(RunVerb, RecordsATrace) {

@@ -253,6 +253,52 @@ TEST_F(CheckerTest, AStatusThatDoesNotWaitSaysNothingByBeingThere) {
   EXPECT_EQ(rules(), std::vector<std::string>{"load-in-flight"});
 }
 
+TEST_F(CheckerTest, AWaitForATagThatHasNoCommandAtAllIsFound) {
+  wait_for(3);  // the first round of two buffers
+  issue(MfcOpcode::get, buffer_, kEa, 64, 3);
+  wait_for(3);
+  wait_for(3);
+  wait_for(4);
+  checker_.write(22, ~0u);
+  checker_.write(23, 2);
+  EXPECT_EQ(rules(), Texts{}) << "commands may come";
+  checker_.end_run();
+  ASSERT_EQ(rules(), Texts{"tag-without-command"});
+  EXPECT_NE(findings_.list().front().fault.message().find("tag 4: the program has issued no command of it"),
+            std::string::npos);
+}
+
+TEST_F(CheckerTest, AListOfAFunctionThatHasReturnedIsFound) {
+  const std::uint32_t list = dma::kLocalStoreBytes - 384;
+  store(list, 16);
+  issue(MfcOpcode::getl, buffer_, (kEa & ~0xFFFFFFFFull) | list, 16, 3);
+  checker_.on_access({{out_}, 4, true, engine_.at, {list - 64}});
+  EXPECT_EQ(rules(), Texts{}) << "its function runs, and calls others";
+  checker_.on_access({{out_}, 4, true, engine_.at, {list + 16}});
+  checker_.on_access({{out_}, 4, true, engine_.at, {list + 16}});
+  EXPECT_EQ(rules(), Texts{"list-in-flight"}) << "once";
+}
+
+/// An SPU stores the whole quadword: of a get of a part of it, it writes back what was there before.
+TEST_F(CheckerTest, AStoreBesideAGetOfAPartOfTheQuadwordIsFound) {
+  store(buffer_, 128);
+  issue(MfcOpcode::get, buffer_ + 20, kEa + 4, 4, 3);
+  load(buffer_ + 16, 4);
+  store(buffer_ + 32, 4);
+  store(buffer_ + 12, 4);
+  EXPECT_EQ(rules(), Texts{}) << "in other quadwords, or only loaded";
+  store(buffer_ + 24, 8);
+  ASSERT_EQ(rules(), Texts{"store-in-flight"});
+  const std::string message = findings_.list().front().fault.message();
+  EXPECT_NE(message.find("store of 8 bytes at buffer + 24"), std::string::npos) << message;
+  EXPECT_NE(message.find("an SPU stores the whole quadword; in flight: get of 4 bytes, tag 3"),
+            std::string::npos)
+      << message;
+  wait_for(3);
+  store(buffer_ + 24, 8);
+  EXPECT_EQ(findings_.list().front().count, 1u);
+}
+
 TEST_F(CheckerTest, AVariableOfAFunctionThatHasReturnedIsNoBuffer) {
   const std::uint32_t variable = dma::kLocalStoreBytes - 384;
   store(variable, 128);
@@ -417,15 +463,6 @@ TEST_F(CheckerTest, CodeMayBeReadAndNotWritten) {
   wait_for(0);
   EXPECT_EQ(rules(), Texts{"write-to-code"});
   EXPECT_EQ(findings_.list().front().count, 2u);
-}
-
-TEST_F(CheckerTest, ATagIsWaitedForOncePerCommand) {
-  issue(MfcOpcode::get, buffer_, kEa, 128, 3);
-  wait_for(3, 0);
-  wait_for(3);
-  EXPECT_EQ(rules(), Texts{});
-  wait_for(3);
-  EXPECT_EQ(rules(), Texts{"tag-without-command"});
 }
 
 TEST_F(CheckerTest, TheEndWaitsForEverything) {

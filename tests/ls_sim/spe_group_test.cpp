@@ -490,7 +490,8 @@ TEST_F(SpeGroupTest, AProxyCommandWithStartBeginsThePreparedRun) {
 }
 
 TEST_F(SpeGroupTest, AProxyCommandWithStartWaitsForTheWholeImage) {
-  if (SC_THREAD_SANITIZER) GTEST_SKIP() << "the command's bytes meet those of the image, as they may";
+  if (SC_THREAD_SANITIZER)
+    GTEST_SKIP() << "the thread sanitizer reports the race that this test makes on purpose";
   const dma::Buffer<std::array<std::uint32_t, 32>> line(memory_, "line", 1);
   SpeGroup group(memory_, {.spes = 1});
   const KernelImage image = test_image("echo_arguments");
@@ -565,7 +566,8 @@ TEST_F(SpeGroupTest, LeavesNobodyBehind) {
 }
 
 TEST_F(SpeGroupTest, AThreadThatCannotBeMadeIsAnErrorAndNoWait) {
-  if (SC_ADDRESS_SANITIZER || SC_THREAD_SANITIZER) GTEST_SKIP() << "it needs all the address space it wants";
+  if (SC_ADDRESS_SANITIZER || SC_THREAD_SANITIZER)
+    GTEST_SKIP() << "a sanitizer needs more address space than the test leaves";
   const RoomForThreads room_for_two(2);
   EXPECT_THROW(SpeGroup(memory_, {.spes = 6}), std::runtime_error);
 }

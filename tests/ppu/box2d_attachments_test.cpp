@@ -225,7 +225,7 @@ TEST_P(Box2dAttachments, BreakWhenTheyWouldCarryMore) {
 
 /// A hundred times the weight of the patch hangs from it: most of it is a rigid body that is welded to the soft one's lower end.
 TEST_P(Box2dAttachments, AWeldCarriesAHundredTimesItsPatchWithoutCreep) {
-  if (kSlowBuild) GTEST_SKIP() << "with sanitizers, which have the others";
+  if (kSlowBuild) GTEST_SKIP() << "too slow with sanitizers, which run the other tests of this file";
   World2d w(9.81f, GetParam());
   SoftBodySettings settings = firm();
   settings.alpha = 1;

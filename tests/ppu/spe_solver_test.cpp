@@ -325,7 +325,7 @@ TEST(SpeSolver, ALargeBodyGivesTheSameBytesOnAnySpesUnderEverySchedule) {
 }
 
 TEST(SpeSolver, TheCheckedKernelFindsNothingInALargeBodyAndGivesTheSameBytes) {
-  if (kSlowBuild) GTEST_SKIP() << "with sanitizers, which have MatchTiles.CheckedKernelsFindNothing";
+  if (kSlowBuild) GTEST_SKIP() << "too slow with sanitizers, which run MatchTiles.CheckedKernelsFindNothing";
   const std::uint64_t expected = hash_of_a_large_run({.spes = 1});
   softcell::test::expect_no_findings(
       [&](const ls_sim::SpeOptions& options) { EXPECT_EQ(hash_of_a_large_run(options), expected); });

@@ -90,7 +90,7 @@ TEST(FindRegions, RefusesHalfWidthsOutOfRange) {
 }
 
 TEST(FindRegions, RefusesMoreEntriesThanTheLimit) {
-  if (kSlowBuild) GTEST_SKIP() << "with sanitizers, a hundred million entries";
+  if (kSlowBuild) GTEST_SKIP() << "too slow with sanitizers: it makes a hundred million entries";
   EXPECT_THROW(find_regions(block(39, 39, 39), 6),
                std::runtime_error);  // 64000 particles, up to 2197 in a region
 }

@@ -1031,7 +1031,7 @@ class CommandRefuses : public testing::TestWithParam<Refusal> {};
 TEST_P(CommandRefuses, WithOneSentenceAndItsStatus) {
   const std::string_view wanted = GetParam().arguments;
   if (kSlowBuild && (wanted.ends_with("--cell 0.005") || wanted.ends_with("--cells 200")))
-    GTEST_SKIP() << "half a minute with sanitizers, which have --cell 0.01";
+    GTEST_SKIP() << "it takes half a minute with sanitizers, which run it with --cell 0.01";
   const ScratchFolder folder;
   write_file(folder / "cube.obj", kCube);
   write_file(folder / "empty.obj", "");

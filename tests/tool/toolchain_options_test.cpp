@@ -79,9 +79,8 @@ TEST(ToolchainOptions, WithoutMeaningAreKeptForOneNote) {
   const Options options =
       parsed({"-O3", "-g", "-pipe", "-funroll-loops", "-mfixed-range=80-127", "-std=c++98", "-T", "script.ld",
               "-Wl,--gc-sections,-e,_start", "-Xassembler", "-x", "-Wa,-a", "a.c"});
-  EXPECT_EQ(options.meaningless,
-            (Words{"-funroll-loops", "-mfixed-range=80-127", "-std=c++98", "-T script.ld", "--gc-sections",
-                   "-e _start", "-Xassembler -x", "-Wa,-a"}));
+  EXPECT_EQ(options.meaningless, (Words{"-funroll-loops", "-mfixed-range=80-127", "-T script.ld",
+                                        "--gc-sections", "-e _start", "-Xassembler -x", "-Wa,-a"}));
   EXPECT_TRUE(options.compiler.empty());
 }
 
@@ -89,6 +88,12 @@ TEST(ToolchainOptions, HaveTheStandardOfTheHeadersInPlaceOfAnOlderOne) {
   EXPECT_EQ(parsed({"a.cc"}).cxx_standard, "-std=gnu++17");
   EXPECT_EQ(parsed({"-std=c++98", "a.cc"}).cxx_standard, "-std=c++17");
   EXPECT_EQ(parsed({"-std=gnu++98", "a.cc"}).cxx_standard, "-std=gnu++17");
+  EXPECT_EQ(parsed({"-std=c++98", "a.cc"}).notes, Words{"-std=c++98: C++ is compiled as C++17 here"});
+  EXPECT_TRUE(parsed({"-std=c++98", "a.cc"}).older_cxx);
+  EXPECT_EQ(parsed({"-fexceptions", "a.cc"}).notes,
+            Words{"-fexceptions: programs have no exceptions and no RTTI here"});
+  EXPECT_EQ(parsed({"--param=a=1", "-pg", "-save-temps", "a.cc"}).meaningless,
+            (Words{"--param=a=1", "-pg", "-save-temps"}));
   EXPECT_EQ(parsed({"-std=gnu++20", "a.cc"}).compiler, Words{"-std=gnu++20"});
   EXPECT_EQ(parsed({"-std=gnu90", "a.c"}).compiler, Words{"-std=gnu90"});
   EXPECT_EQ(parsed({"-ansi", "a.cc"}, Language::kCxx).cxx_standard, "-std=c++17");

@@ -46,6 +46,162 @@ file(WRITE ${lab}/unchecked.c "#ifdef SOFTCELL_CHECKED\nint nowhere(void);\n#els
   "int main(void) { return nowhere(); }\n")
 says(0 "undefined[^\n]*nowhere.*gets no checked image: it does not link\n$" ${gcc} ${lab}/unchecked.c -o ${lab}/unchecked)
 
+says(0 "^[0-9.]+\n$" ${gcc} -dumpversion)
+says(0 "^libgcc.a\n$" ${gcc} -print-libgcc-file-name)
+says(0 "^crt1.o\n$" ${gcc} -print-file-name=crt1.o)
+says(0 "note: without meaning on a PC: --param=max-inline-insns-auto=5 -save-temps -pg" ${gcc} --param=max-inline-insns-auto=5 -save-temps
+  -pg -DFACTOR=2 -I${lab}/spu -c ${lab}/spu/main.c -o ${lab}/main.o)
+says(2 "main.o is an object that was not linked; link it with softcell-spu-gcc" ${BIN}/softcell-embedspu name ${lab}/main.o ${lab}/x.o)
+says(2 "softcell is no SPU program; embed what softcell-spu-gcc has linked" ${BIN}/softcell-embedspu name ${BIN}/softcell ${lab}/x.o)
+file(WRITE ${lab}/old.cpp "int f() { register int i = 3; return i; }\n")
+says(0 "note: -std=gnu\\+\\+98: C\\+\\+ is compiled as C\\+\\+17 here" ${BIN}/softcell-spu-g++ -Werror -std=gnu++98 -c ${lab}/old.cpp -o ${lab}/old.o)
+says(0 "note: -fexceptions: programs have no exceptions" ${BIN}/softcell-spu-g++ -fexceptions -c ${lab}/old.cpp -Wno-register -o ${lab}/old.o)
+
+# The headers of the PPU side have no warnings of their own.
+file(WRITE ${lab}/pedantic.c "#include <cbea_map.h>\n#include <libspe2.h>\n#include <libsync.h>\n#include <ppu_intrinsics.h>\nint main(void) { return 0; }\n")
+foreach(standard -std=c99 -ansi)
+  says(0 "^$" gcc ${standard} -pedantic -Wall -Wextra -Werror -I${INCLUDE} -c ${lab}/pedantic.c -o ${lab}/pedantic.o)
+endforeach()
+
+# Warnings are those that the program asks for.
+file(WRITE ${lab}/warned.cpp "struct s { int a, b, c; };\nint b;\nint f(int b, unsigned u) { struct s q = {1}; return b < u ? q.a : 0; }\n")
+foreach(compiler ${gcc} ${BIN}/softcell-spu-g++)
+  says(0 "^$" ${compiler} -Werror -c ${lab}/warned.cpp -o ${lab}/warned.o)
+endforeach()
+says(1 "Werror=shadow" ${BIN}/softcell-spu-g++ -Werror -Wshadow -c ${lab}/warned.cpp -o ${lab}/warned.o)
+says(1 "Werror=unused-parameter" sh -c "printf 'int f(int a) { return 1\\073 }\n' | ${gcc} -Wall -Wextra -Werror -c -x c - -o ${lab}/warned.o")
+
+# Findings of calls of the C library have the line of the program.
+file(WRITE ${lab}/early.c "#include <spu_mfcio.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+static char text[128] __attribute__((aligned(128))); static uint64_t place[1] __attribute__((aligned(16)));
+int main(uint64_t spe, uint64_t argp, uint64_t envp) {
+  mfc_get(place, argp, 8, 0, 0, 0); mfc_write_tag_mask(1); mfc_read_tag_status_all(); argp = place[0]; mfc_get(text, argp, 128, 0, 0, 0);
+  int n = strlen(text);
+  puts(text);
+  char *copy = strdup(text);
+  mfc_write_tag_mask(1);
+  mfc_read_tag_status_all();
+  free(copy);
+  return n > 1000;
+}
+")
+step("a program that reads too early" ${gcc} -g ${lab}/early.c -o ${lab}/early)
+step("512 zeros" sh -c "head -c 512 /dev/zero > ${lab}/zeros")
+foreach(found "early.c:8 \\(strlen\\): load-in-flight: load of 1 byte at text" "early.c:9 \\(puts\\): load-in-flight" "early.c:10 \\(strdup\\): load-in-flight")
+  says(3 "${found}" ${BIN}/softcell spu run --checked ${lab}/early --inout z=${lab}/zeros --arg @z)
+endforeach()
+
+says(0 "" ${BIN}/softcell spu run ${lab}/early --inout z=${lab}/zeros --arg @z --coverage ${lab}/early.info)
+says(0 "^SF:[^\n]*early.c\n$" grep "^SF:" ${lab}/early.info)
+
+# The blocks of the heap are objects like variables.
+file(WRITE ${lab}/heap.c "#include <malloc.h>
+#include <spu_mfcio.h>
+#include <stdlib.h>
+#include <string.h>
+volatile unsigned sink;
+static unsigned variable; static uint64_t place[1] __attribute__((aligned(16)));
+int main(uint64_t spe, uint64_t argp, uint64_t envp) {
+  volatile unsigned *b = malloc(40), *c = memalign(128, 128); mfc_get(place, argp, 8, 0, 0, 0); mfc_write_tag_mask(1); mfc_read_tag_status_all(); argp = place[0];
+  b = realloc((void *)b, 64);
+  memset((void *)b, 0, 64);
+#if CASE == 1
+  b[16] = 5;
+#elif CASE == 2
+  free((void *)b); sink = b[2];
+#elif CASE == 3
+  free((void *)b); free((void *)b); b = NULL;
+#elif CASE == 4
+  mfc_get(c, argp, 256, 0, 0, 0); mfc_write_tag_mask(1); mfc_read_tag_status_all();
+#elif CASE == 5
+  free(&variable);
+#else
+  free(malloc(0)); free(calloc(3, 5)); free(NULL);
+  mfc_get(c, argp, 128, 0, 0, 0); mfc_write_tag_mask(1); mfc_read_tag_status_all();
+  b = realloc((void *)b, 4000); b[999] = 1; b = realloc((void *)b, 32); b[7] = 2;
+  char *copy = strdup(\"block\"); copy[5] = 0; free(copy);
+#endif
+  if (CASE != 2) free((void *)b);
+  free((void *)c);
+  return 0;
+}
+")
+set(findings "^$" "heap.c:12: outside-objects: store of 4 bytes at the heap [^\n]*: it lies behind a block of 64 bytes"
+  "heap.c:14: outside-objects: load of 4 bytes at the heap [^\n]*: it lies in a block of 64 bytes that was freed"
+  "heap.c:16: outside-objects: free of the heap [^\n]*: the block was freed before"
+  "heap.c:18: outside-objects: get tag 0[^\n]*: it passes the end of a block of 128 bytes"
+  "heap.c:20: outside-objects: free of variable [^\n]*: no block of the heap begins there")
+set(case 0)
+foreach(found IN LISTS findings)
+  step("case ${case} of the heap" ${gcc} -g -DCASE=${case} ${lab}/heap.c -o ${lab}/heap)
+  set(status 3)
+  if(case EQUAL 0)
+    set(status 0)
+    set(found "")
+  endif()
+  says(${status} "${found}" ${BIN}/softcell spu run --checked ${lab}/heap --inout z=${lab}/zeros --arg @z)
+  math(EXPR case "${case} + 1")
+endforeach()
+
+# A cache in software: 64 KB of words through 4 KB of lines, and beside it one for reading.
+file(WRITE ${lab}/cached.c "#include <spu_mfcio.h>
+#define CACHE_NAME words
+#define CACHED_TYPE unsigned int
+#define CACHE_LOG2NSETS 3
+#include <cache-api.h>
+#undef CACHE_NAME
+#undef CACHED_TYPE
+#undef CACHE_LOG2NSETS
+#define CACHE_NAME vectors
+#define CACHED_TYPE vec_uint4
+#define CACHE_TYPE CACHE_TYPE_RO
+#define CACHE_LOG2NSETS 2
+#define CACHE_LOG2NWAY 0
+#define CACHELINE_LOG2SIZE 8
+#include <cache-api.h>
+enum { COUNT = 16384 };
+static unsigned int block[COUNT / 4] __attribute__((aligned(128)));
+static uint64_t place[1] __attribute__((aligned(16)));
+int main(uint64_t spe, uint64_t argp, uint64_t envp) {
+  unsigned int i, wrong = 0, *kept;
+  (void)spe, (void)envp;
+  mfc_get(place, argp, 8, 0, 0, 0); mfc_write_tag_mask(1); mfc_read_tag_status_all(); argp = place[0];
+  for (i = 0; i < COUNT; ++i) cache_wr(words, argp + 4 * (i * 5 % COUNT), i);
+  for (i = 0; i < COUNT; i += 7) wrong += cache_rd(words, argp + 4 * (i * 5 % COUNT)) != i;
+  kept = cache_rw(words, argp + 400);
+  cache_lock(words, kept);
+  for (i = 0; i < COUNT; i += 32) cache_wr(words, argp + 4 * i + 16, cache_rd(words, argp + 4 * i + 16) + 1000000);
+  *kept = 77;
+  cache_unlock(words, kept);
+  for (i = 0; i < 16; ++i) cache_touch(words, argp + 128 * i);
+  cache_wait(words, cache_touch(words, argp + 128));
+  cache_flush(words);
+  for (i = 0; i < COUNT; i += 64) wrong += spu_extract(cache_rd(vectors, argp + 4 * i), 0) * 5 % COUNT != i;
+  for (i = 0; i < 4; ++i) {
+    unsigned int k;
+    mfc_get(block, argp + sizeof block * i, sizeof block, 9, 0, 0);
+    mfc_write_tag_mask(1 << 9);
+    mfc_read_tag_status_all();
+    for (k = 0; k < COUNT / 4; ++k) {
+      const unsigned int at = COUNT / 4 * i + k, expected = at == 100 ? 77 : at % 32 == 4 ? block[k] - 1000000 : block[k];
+      wrong += at == 100 ? block[k] != 77 : expected * 5 % COUNT != at;
+    }
+  }
+  return wrong != 0;
+}
+")
+step("64 KB of zeros" sh -c "head -c 65536 /dev/zero > ${lab}/main_storage")
+foreach(compiler "${gcc};-std=c99" "${BIN}/softcell-spu-g++;-x;c++")
+  step("a cache in software" ${compiler} -Wall -Wextra -Werror -g -O2 ${lab}/cached.c -o ${lab}/cached)
+  foreach(way --checked "--dma;lazy" "--dma;random:3")
+    says(0 "" ${BIN}/softcell spu run ${way} ${lab}/cached --inout x=${lab}/main_storage --arg @x)
+  endforeach()
+endforeach()
+says(1 "define CACHE_NAME, the name of a cache" sh -c "echo '#include <cache-api.h>' | ${gcc} -c -x c - -o ${lab}/x.o")
+
 # What cannot be done is said in one sentence.
 file(WRITE ${lab}/code.s "il $3, 1\n")
 file(WRITE ${lab}/wrong.c "int main(void) { return undeclared; }\n")

@@ -33,6 +33,7 @@ const std::map<std::string, std::string> kOtherwise = {
     {"pointer_past_the_local_store", "addresses of an SPU wrap around"},
     {"store_behind_the_last_object", "a word is stored by a load first, which is found: load-never-written"},
     {"store_into_a_constant", "the constant is in no segment of its own: not found yet"},
+    {"store_beside_a_get", "a word is stored by a load first, which is found: load-in-flight"},
     {"store_into_a_get", "a word is stored by a load first, which is found: load-in-flight"},
     {"put_from_a_function_that_returned",
      "nobody knows where the stack of an SPU program ends: only a store there is found"},

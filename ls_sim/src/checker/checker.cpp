@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cstring>
 #include <span>
 #include <utility>
 
@@ -18,6 +19,7 @@ using dma::MfcOpcode;
 using dma::Rule;
 
 constexpr std::uint32_t kEventStatus = 0, kListStallStatus = 25, kListStallAck = 26, kAtomicStatus = 27;
+constexpr std::uint32_t kCallBytes = 5;
 constexpr std::uint32_t kAllTags = 2;  // what MFC_WrTagUpdate waits for
 
 std::string hex(std::uint32_t lsa) {
@@ -44,6 +46,7 @@ void Checker::begin_run(const KernelImage& image, const StackRange& stack, bool 
   debug_information_ = &debug_information_of(image);
   objects_.emplace(image, stack);
   last_store_.reset();
+  if (forgets) heap_.clear();
   written_.forget_the_last_program(forgets ? 0 : stack.begin, forgets ? dma::kLocalStoreBytes : stack.end);
   if (runs_spu_program() || image.program) {
     written_.mark(image.begin, image.sizes.end - image.begin);  // bss is zero in each run
@@ -57,6 +60,7 @@ void Checker::begin_run(const KernelImage& image, const StackRange& stack, bool 
   for (const PaddingRange& gap : debug_information_->padding) written_.mark(gap.lsa, gap.bytes);
   in_flight_.clear();
   tag_mask_ = tags_issued_ = 0;
+  idle_waits_.clear();
   is_waiting_ = false;
   stack_is_in_flight_ = false;
   asked_at_ = 0;
@@ -102,6 +106,11 @@ void Checker::mark_changed_words() {
   constexpr std::uint32_t kWordBytes = 4;
   const auto now = to_.local_store.subspan(last_store_->lsa, dma::kQuadwordBytes);
   const auto before = std::span(last_store_->before);
+  for (std::uint32_t i = 0; i < dma::kQuadwordBytes; ++i) {
+    if ((last_store_->put_bytes >> i & 1u) == 0 || now[i] == before[i]) continue;
+    report(Rule::kStoreInFlight, last_store_->writer, last_store_->put_detail);
+    break;
+  }
   for (std::uint32_t at = 0; at < dma::kQuadwordBytes; at += kWordBytes) {
     if (std::ranges::equal(now.subspan(at, kWordBytes), before.subspan(at, kWordBytes))) continue;
     mark_unsynced({.lsa = last_store_->lsa + at, .bytes = kWordBytes}, last_store_->writer);
@@ -183,12 +192,12 @@ UndefinedBits Checker::undefined_bits(dma::LocalStoreAddress quadword) {
 void Checker::on_access(const Access& access) {
   SC_ASSERT(objects_.has_value(), "a {} of {} bytes at {} before a run", access.is_store ? "store" : "load",
             access.bytes, access.lsa);
+  stack_pointer_ = access.stack_pointer.value;
   check_code(access.instruction);
   check_frames(access.instruction, access.stack_pointer.value);
   // An SPU loads and stores the whole quadword in which a variable lies, and its neighbours with it.
   const std::string trespass =
-      runs_spu_program() ? ""
-                         : objects_->trespass(access.lsa.value, access.bytes, access.stack_pointer.value);
+      runs_spu_program() ? "" : trespass_of(access.lsa.value, access.bytes, access.stack_pointer.value);
   if (!trespass.empty()) {
     report(Rule::kOutsideObjects, access.instruction, describe(access) + ": " + trespass);
   } else if (access.is_store) {
@@ -200,14 +209,31 @@ void Checker::on_access(const Access& access) {
   if (runs_spu_program()) {
     SC_ASSERT(access.bytes == dma::kQuadwordBytes && access.lsa.value % dma::kQuadwordBytes == 0,
               "an SPU stores {} bytes at {}", access.bytes, access.lsa);
-    last_store_ = QuadwordStore{access.lsa.value, access.instruction, {}};
+    last_store_ = QuadwordStore{.lsa = access.lsa.value, .writer = access.instruction};
     std::ranges::copy(to_.local_store.subspan(access.lsa.value, access.bytes), last_store_->before.begin());
+    watch_bytes_of_put(access);
     for (std::uint32_t i = 0; i < access.bytes; ++i)
       written_.mark_but(access.lsa.value + i, access.undefined[i]);
     return;
   }
   written_.mark(access.lsa.value, access.bytes);
   mark_unsynced({.lsa = access.lsa.value, .bytes = access.bytes}, access.instruction);
+}
+
+std::string Checker::trespass_of(std::uint32_t lsa, std::uint32_t bytes, std::uint32_t stack_pointer) const {
+  std::string trespass = objects_->trespass(lsa, bytes, stack_pointer);
+  return trespass.empty() && objects_->in_heap(lsa) ? heap_.trespass(lsa, bytes) : trespass;
+}
+
+void Checker::on_heap_block(const Access& block, bool is_freed) {
+  SC_ASSERT(objects_.has_value(), "a block of {} bytes at {} before a run", block.bytes, block.lsa);
+  stack_pointer_ = block.stack_pointer.value;
+  if (!is_freed) return heap_.add(block.lsa.value, block.bytes);
+  const std::string mistake = heap_.end(block.lsa.value);
+  if (!mistake.empty())
+    report(
+        Rule::kOutsideObjects, block.instruction,
+        "free of " + objects_->describe(block.lsa.value) + " (LSA " + hex(block.lsa.value) + "): " + mistake);
 }
 
 /// What it reads may be more than its caller has written, such as the padding of what fwrite() is given.
@@ -217,6 +243,7 @@ void Checker::on_host_access(dma::LocalStoreAddress lsa, std::uint32_t bytes, bo
                       .is_store = is_store,
                       .instruction = to_.engine.position(),
                       .stack_pointer = to_.engine.stack_pointer()};
+  stack_pointer_ = access.stack_pointer.value;
   if (is_store) {
     if (objects_.has_value()) check_store(access);  // else a resident kernel before its first job
     written_.mark(lsa.value, bytes);
@@ -261,9 +288,49 @@ void Checker::check_store(const Access& access) {
   const CommandInFlight* other = in_flight_.listing(lsa, access.bytes);
   const Rule rule = other != nullptr ? Rule::kListInFlight : Rule::kStoreInFlight;
   if (other == nullptr) other = in_flight_.writing(lsa, access.bytes);
-  if (other == nullptr) other = in_flight_.reading(lsa, access.bytes);
-  if (other != nullptr)
+  if (other == nullptr) {
+    other = in_flight_.reading(lsa, access.bytes);
+    if (other != nullptr && is_put_of_a_part(*other, lsa)) other = nullptr;
+  }
+  if (other != nullptr) {
     report(rule, access.instruction, describe(access) + "; in flight: " + describe(*other));
+  } else if (const CommandInFlight* const beside = get_beside(access)) {
+    report(Rule::kStoreInFlight, access.instruction,
+           describe(access) + ", and an SPU stores the whole quadword; in flight: " + describe(*beside));
+  }
+}
+
+/// A get in flight to other bytes of the same variable and quadword: an SPU would write over them what it had loaded before. On an SPU
+/// other variables have quadwords of their own, and where those of the stack lie is not known.
+const CommandInFlight* Checker::get_beside(const Access& access) const {
+  const std::uint32_t lsa = access.lsa.value, quadword = lsa / dma::kQuadwordBytes * dma::kQuadwordBytes;
+  if (runs_spu_program() || access.bytes >= dma::kQuadwordBytes) return nullptr;
+  const LocalRange variable = objects_->variable_at(lsa);
+  const std::uint32_t begin = std::max(quadword, variable.lsa),
+                      end = std::min(quadword + dma::kQuadwordBytes, variable.lsa + variable.bytes);
+  return begin < end ? in_flight_.writing(begin, end - begin) : nullptr;
+}
+
+/// Of an SPU program's store: whether the put leaves bytes of the quadword out, which may be those that the program changes.
+bool Checker::is_put_of_a_part(const CommandInFlight& put, std::uint32_t quadword) const {
+  if (!runs_spu_program()) return false;
+  return std::ranges::none_of(put.ranges, [&](const MovedRange& range) {
+    return range.lsa <= quadword && quadword + dma::kQuadwordBytes <= range.lsa + range.bytes;
+  });
+}
+
+/// Of such a put the store breaks the rule if it changes a byte that is put.
+void Checker::watch_bytes_of_put(const Access& store) {
+  const std::uint32_t quadword = store.lsa.value;
+  const CommandInFlight* const put = in_flight_.reading(quadword, dma::kQuadwordBytes);
+  if (put == nullptr || !is_put_of_a_part(*put, quadword)) return;
+  for (std::uint32_t i = 0; i < dma::kQuadwordBytes; ++i) {
+    for (const MovedRange& range : put->ranges) {
+      if (quadword + i - range.lsa < range.bytes)
+        last_store_->put_bytes |= static_cast<std::uint16_t>(1u << i);
+    }
+  }
+  last_store_->put_detail = describe(store) + "; in flight: " + describe(*put);
 }
 
 /// @return  whether it breaks the rule.
@@ -288,6 +355,7 @@ void Checker::check_load(const Access& access) {
 // ---- commands
 
 ChannelReply Checker::issue(const dma::MfcCommand& command) {
+  stack_pointer_ = to_.engine.stack_pointer().value;
   check_code(to_.engine.position());
   check_frames(to_.engine.position(), to_.engine.stack_pointer().value);
   CommandInFlight in_flight{
@@ -324,6 +392,8 @@ void Checker::check_ranges(CommandInFlight& command) {
       (is_used ? stack_is_in_flight_ : command.frame_was_left) = true;
     }
   }
+  if (command.is_list() && !runs_spu_program() && objects_->in_stack(command.command.list_address().value))
+    stack_is_in_flight_ = true;
   check_overlaps(command);
 }
 
@@ -346,7 +416,7 @@ void Checker::check_local_range(const dma::MfcCommand& command, const MovedRange
   const std::string where = objects_->describe(range.lsa);
   // A program for the SPU may have a heap below its stack.
   const std::uint32_t stack_pointer = runs_spu_program() ? 0 : to_.engine.stack_pointer().value;
-  const std::string trespass = objects_->trespass(range.lsa, range.bytes, stack_pointer);
+  const std::string trespass = trespass_of(range.lsa, range.bytes, stack_pointer);
   if (!trespass.empty()) {
     report(Rule::kOutsideObjects, here, std::to_string(range.bytes) + " bytes at " + where + ": " + trespass,
            command);
@@ -417,12 +487,25 @@ void Checker::check_frames(Address here, std::uint32_t stack_pointer) {
                  " bytes on the stack has returned, and the next one stores there; in flight: " +
                  describe(command));
     }
+    if (!command.is_list() || command.frame_was_left) continue;
+    const std::uint32_t list = command.command.list_address().value;
+    if (!objects_->in_stack(list)) continue;
+    if (list + command.command.size > stack_pointer) {
+      stack_is_in_flight_ = true;
+      continue;
+    }
+    command.frame_was_left = true;
+    report(Rule::kListInFlight, here,
+           "the function that has the list on the stack has returned, and the next one stores there; in "
+           "flight: " +
+               describe(command));
   }
 }
 
 // ---- channels
 
 ChannelReply Checker::count(std::uint32_t channel) {
+  stack_pointer_ = to_.engine.stack_pointer().value;
   check_code(to_.engine.position());
   ChannelReply reply = to_.channels.count(channel);
   if (!reply.fault && reply.value != 0 && channel == static_cast<std::uint32_t>(Channel::kMfcRdTagStat))
@@ -431,6 +514,7 @@ ChannelReply Checker::count(std::uint32_t channel) {
 }
 
 ChannelReply Checker::write(std::uint32_t channel, std::uint32_t value) {
+  stack_pointer_ = to_.engine.stack_pointer().value;
   check_code(to_.engine.position());
   check_frames(to_.engine.position(), to_.engine.stack_pointer().value);
   ChannelReply reply = to_.channels.write(channel, value);
@@ -445,13 +529,23 @@ void Checker::on_tag_update(std::uint32_t condition) {
   is_waiting_ = condition != 0;
   asked_at_ = in_flight_.last_number();
   awaited_ = condition == kAllTags || std::has_single_bit(tag_mask_) ? tag_mask_ : 0;
-  if (!is_waiting_ || (tag_mask_ & tags_issued_) != 0) return;
-  std::string tags;
-  for (std::uint32_t tag = 0; tag < dma::kTagCount; ++tag) {
-    if ((tag_mask_ >> tag & 1u) != 0) tags += (tags.empty() ? "tag " : ", tag ") + std::to_string(tag);
+  // A mask of all tags is no wrong number, and commands of a tag may come later: a loop over two buffers waits for either from the start.
+  if (!is_waiting_ || (tag_mask_ & tags_issued_) != 0 || tag_mask_ == ~0u) return;
+  idle_waits_.try_emplace({to_.engine.position().value, tag_mask_}, stack_pointer_);
+}
+
+void Checker::report_idle_waits() {
+  for (const auto& [wait, stack_pointer] : idle_waits_) {
+    const auto [instruction, mask] = wait;
+    if ((mask & tags_issued_) != 0) continue;
+    std::string tags;
+    for (std::uint32_t tag = 0; tag < dma::kTagCount; ++tag) {
+      if ((mask >> tag & 1u) != 0) tags += (tags.empty() ? "tag " : ", tag ") + std::to_string(tag);
+    }
+    stack_pointer_ = stack_pointer;
+    report(Rule::kTagWithoutCommand, {instruction},
+           tags.empty() ? "the tag mask is empty" : tags + ": the program has issued no command of it");
   }
-  report(Rule::kTagWithoutCommand, to_.engine.position(),
-         tags.empty() ? "the tag mask is empty" : tags + ": no command since the last wait");
 }
 
 /// The tag status is there, as its channel's count or its event says, and not yet read: the tags that it waited for are complete.
@@ -460,13 +554,13 @@ void Checker::on_tag_status() {
 }
 
 ChannelReply Checker::read(std::uint32_t channel) {
+  stack_pointer_ = to_.engine.stack_pointer().value;
   check_code(to_.engine.position());
   check_frames(to_.engine.position(), to_.engine.stack_pointer().value);
   ChannelReply reply = to_.channels.read(channel);
   if (reply.fault) return reply;
   if (channel == static_cast<std::uint32_t>(Channel::kMfcRdTagStat)) {
     complete(reply.value);
-    if (is_waiting_) tags_issued_ &= ~reply.value;
   }
   if (channel == kEventStatus && (reply.value & dma::Mfc::kTagStatusEvent) != 0) on_tag_status();
   if (channel == kListStallStatus) on_list_stall(reply.value);
@@ -501,6 +595,7 @@ void Checker::on_list_acknowledged(std::uint32_t tag) {
 }
 
 void Checker::end_run() {
+  report_idle_waits();
   if (status_unread_) {
     report(Rule::kAtomicStatusNotRead, status_unread_->issued_at, "the program ends without it",
            status_unread_->command);
@@ -519,13 +614,65 @@ void Checker::end_run() {
 
 // ---- words
 
+/// Of a place in the C library: the line of the program that has called it, and the function that it has called: "lab.c:30 (strlen)".
+std::string Checker::place_in_program(Address instruction) const {
+  constexpr int kDeepest = 8;  // calls in the library
+  CallFrame frame{instruction, stack_pointer_};
+  for (int calls = 0; calls < kDeepest && debug_information_->lines.is_in_library(frame.instruction);
+       ++calls) {
+    const ImageObject* const function = function_of(*image_, frame.instruction);
+    const auto caller = function == nullptr ? std::nullopt : caller_of(*function, frame.stack_pointer);
+    if (!caller) break;
+    if (!debug_information_->lines.is_in_library(caller->instruction))
+      return place_of(caller->instruction) + " (" + caller->called->name + ")";
+    frame = *caller;
+  }
+  return place_of(instruction);
+}
+
+/// The place that an instruction of 5 bytes goes to, a call or a jump by 32 bits. [AMD64 manual, volume 3] documented
+std::optional<std::uint32_t> Checker::target_of(std::uint32_t instruction, std::byte opcode) const {
+  if (to_.local_store[instruction] != opcode) return std::nullopt;
+  std::int32_t distance = 0;
+  std::memcpy(&distance, &to_.local_store[instruction + 1], sizeof distance);
+  return instruction + kCallBytes + static_cast<std::uint32_t>(distance);
+}
+
+/// Who has called this function: the first return address on the stack behind a call of it, or of a function that ends by a jump to it.
+/// Nothing for one that was called by a pointer.
+std::optional<Checker::CallFrame> Checker::caller_of(const ImageObject& function,
+                                                     std::uint32_t stack_pointer) const {
+  constexpr std::uint32_t kSlotBytes = 8;
+  constexpr std::byte kCall{0xE8}, kJump{0xE9};
+  const auto jumps_to_it = [&](const ImageObject& other) {
+    for (std::uint32_t at = other.begin.value; at + kCallBytes <= other.begin.value + other.bytes; ++at)
+      if (target_of(at, kJump) == function.begin.value) return true;
+    return false;
+  };
+  const auto base = reinterpret_cast<std::uintptr_t>(to_.local_store.data());
+  for (std::uint32_t slot = (stack_pointer + kSlotBytes - 1) / kSlotBytes * kSlotBytes;
+       objects_->in_stack(slot); slot += kSlotBytes) {
+    std::uint64_t behind = 0;
+    std::memcpy(&behind, &to_.local_store[slot], sizeof behind);
+    behind -= base;
+    if (behind < image_->text_begin + kCallBytes || behind > image_->text_end) continue;
+    const auto call = static_cast<std::uint32_t>(behind) - kCallBytes;
+    const auto target = target_of(call, kCall);
+    const ImageObject* const called = target ? function_of(*image_, {*target}) : nullptr;
+    if (called == nullptr || called->begin.value != *target) continue;
+    if (called->begin.value != function.begin.value && !jumps_to_it(*called)) continue;
+    return CallFrame{{call}, slot + kSlotBytes, called};
+  }
+  return std::nullopt;
+}
+
 void Checker::report(Rule rule, Address place, std::string detail,
                      const std::optional<dma::MfcCommand>& command) {
   SC_ASSERT(image_ != nullptr, "rule {} broken before a run: {}", dma::name(rule), detail);
   const dma::Fault finding{.rule = rule,
                            .spe = to_.spe,
                            .kernel = image_->name,
-                           .place = place_of(place),
+                           .place = place_in_program(place),
                            .command = command,
                            .detail = std::move(detail)};
   to_.findings.add(finding);

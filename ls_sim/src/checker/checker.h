@@ -10,14 +10,17 @@
 #include <array>
 #include <atomic>
 #include <cstddef>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "commands_in_flight.h"
+#include "heap_blocks.h"
 #include "image/function_names.h"
 #include "image/object_map.h"
 #include "image/object_padding.h"
@@ -92,6 +95,7 @@ class Checker final : public ChannelPort, public AccessObserver {
     return to_.channels.stop(code, assist);
   }
   void on_access(const Access& access) override;
+  void on_heap_block(const Access& block, bool is_freed) override;
   void on_instruction(const ExecutedInstruction& instruction) override;
   UndefinedBits undefined_bits(dma::LocalStoreAddress quadword) override;
   void on_host_access(dma::LocalStoreAddress lsa, std::uint32_t bytes, bool is_store) override;
@@ -108,9 +112,18 @@ class Checker final : public ChannelPort, public AccessObserver {
 
   /// A store of an SPU program, which writes a whole quadword: the bytes that were there.
   struct QuadwordStore {
-    std::uint32_t lsa;
-    Address writer;
-    std::array<std::byte, dma::kQuadwordBytes> before;
+    std::uint32_t lsa = 0;
+    Address writer = {};
+    std::array<std::byte, dma::kQuadwordBytes> before = {};
+    std::uint16_t put_bytes = 0;  ///< bit b: byte b is on its way to main storage
+    std::string put_detail = {};  ///< of the finding if such a byte changes
+  };
+
+  /// Where a function of the program is, and its stack pointer there.
+  struct CallFrame {
+    Address instruction;
+    std::uint32_t stack_pointer = 0;
+    const ImageObject* called = nullptr;  ///< what it calls there
   };
 
   /// What an image's file says of its sources and variables.
@@ -127,7 +140,11 @@ class Checker final : public ChannelPort, public AccessObserver {
   void mark_unsynced(const MovedRange& range, Address writer);
   bool is_written(std::uint32_t lsa, std::uint32_t bytes);
   void find_unseen_writes(std::uint32_t lsa, std::uint32_t bytes);
+  std::string trespass_of(std::uint32_t lsa, std::uint32_t bytes, std::uint32_t stack_pointer) const;
   void check_store(const Access& access);
+  const CommandInFlight* get_beside(const Access& access) const;
+  bool is_put_of_a_part(const CommandInFlight& put, std::uint32_t quadword) const;
+  void watch_bytes_of_put(const Access& store);
   void check_load(const Access& access);
   void report_undefined(const ExecutedInstruction& instruction);
   void check_ranges(CommandInFlight& command);
@@ -138,6 +155,7 @@ class Checker final : public ChannelPort, public AccessObserver {
   void check_frames(Address here, std::uint32_t stack_pointer);
   void complete(std::uint32_t tags);
   void on_tag_update(std::uint32_t condition);
+  void report_idle_waits();
   void on_tag_status();
   void on_list_stall(std::uint32_t tags);
   void on_list_acknowledged(std::uint32_t tag);
@@ -145,6 +163,9 @@ class Checker final : public ChannelPort, public AccessObserver {
   void report(dma::Rule rule, Address place, std::string detail,
               const std::optional<dma::MfcCommand>& command = std::nullopt);
   bool check_load_in_flight(const Access& access);
+  std::string place_in_program(Address instruction) const;
+  std::optional<std::uint32_t> target_of(std::uint32_t instruction, std::byte opcode) const;
+  std::optional<CallFrame> caller_of(const ImageObject& function, std::uint32_t stack_pointer) const;
   std::string describe(const Access& access) const;
   std::string describe(const CommandInFlight& command) const;
   bool runs_spu_program() const { return image_ != nullptr && image_->machine == Machine::kSpu; }
@@ -164,12 +185,16 @@ class Checker final : public ChannelPort, public AccessObserver {
   WrittenBytes written_;
   std::atomic<bool> is_shared_ = false;
   UnsyncedBytes unsynced_;
+  HeapBlocks heap_;
   CommandsInFlight in_flight_;
   std::uint32_t tag_mask_ = 0;
-  std::uint32_t tags_issued_ = 0;    ///< since each was last waited for
+  std::uint32_t tags_issued_ = 0;  ///< the tags of all commands of this run
+  /// Waits for tags of which there was no command yet, by instruction and mask: the stack pointer of the first.
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> idle_waits_;
   bool stack_is_in_flight_ = false;  ///< a command may move variables of functions
   bool stack_overflow_known_ = false;
-  bool is_waiting_ = false;     ///< the open tag-status request is one that waits
+  std::uint32_t stack_pointer_ = 0;  ///< of the access or channel operation that is being looked at
+  bool is_waiting_ = false;          ///< the open tag-status request is one that waits
   std::uint32_t awaited_ = 0;   ///< the tags that it waits for, all of them; 0: it waits for any of several
   std::uint64_t asked_at_ = 0;  ///< number of the last command when the request was made
   std::optional<QuadwordStore> last_store_;  ///< not yet looked at

@@ -21,6 +21,12 @@ const ImageObject* ObjectMap::object_at(std::uint32_t lsa) const {
   return nullptr;
 }
 
+LocalRange ObjectMap::variable_at(std::uint32_t lsa) const {
+  if (in_stack(lsa)) return {};
+  if (const ImageObject* const object = object_at(lsa)) return {object->begin.value, object->bytes};
+  return in_heap(lsa) ? LocalRange{image_->sizes.end, stack_.begin - image_->sizes.end} : LocalRange{};
+}
+
 std::string ObjectMap::trespass(std::uint32_t lsa, std::uint32_t bytes, std::uint32_t stack_pointer) const {
   const std::uint32_t end = lsa + bytes;
   if (in_stack(lsa)) {

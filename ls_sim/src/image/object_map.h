@@ -14,6 +14,11 @@ struct StackRange {
   std::uint32_t begin = 0, end = 0;
 };
 
+/// Bytes of a local store.
+struct LocalRange {
+  std::uint32_t lsa = 0, bytes = 0;
+};
+
 /// Borrows the image.
 class ObjectMap {
  public:
@@ -30,6 +35,9 @@ class ObjectMap {
   /// Empty if the range lies in one variable, in code and constants, or in the used part of the stack; else a
   /// sentence that says what is wrong.
   std::string trespass(std::uint32_t lsa, std::uint32_t bytes, std::uint32_t stack_pointer) const;
+
+  /// The variable that holds this byte, or all of the heap, whose blocks have quadwords of their own; else empty.
+  LocalRange variable_at(std::uint32_t lsa) const;
 
   /// "buffer + 16", "the stack", "the image's code".
   std::string describe(std::uint32_t lsa) const;

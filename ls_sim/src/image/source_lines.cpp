@@ -6,6 +6,7 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <initializer_list>
 #include <string_view>
 #include <unordered_map>
 #include <vector>
@@ -13,11 +14,13 @@
 namespace softcell::ls_sim {
 namespace {
 
+constexpr std::string_view kLibraryFolder = "/sdk/library/";
+
 /// Headers that no user of the SDK has written: the SDK's own and the compiler's.
 bool is_foreign(std::string_view file) {
-  for (const std::string_view folder :
-       {"/sdk/host/", "/sdk/c/", "/sdk/shared/", "/sdk/library/", "/sdk/check/", "/lib/gcc/", "/lib/clang/",
-        "/usr/include/", "/lib/llvm-"}) {
+  for (const std::string_view folder : std::initializer_list<std::string_view>{
+           "/sdk/host/", "/sdk/c/", "/sdk/shared/", kLibraryFolder, "/sdk/check/", "/lib/gcc/", "/lib/clang/",
+           "/usr/include/", "/lib/llvm-"}) {
     if (file.find(folder) != std::string_view::npos) return true;
   }
   return false;
@@ -119,7 +122,9 @@ struct SourceLines::Reader {
   std::shared_ptr<const std::vector<std::byte>> file;
   Elf* elf = nullptr;
   Dwarf* dwarf = nullptr;
-  std::unordered_map<std::uint32_t, std::string> known;  // a loop asks for the same place again and again
+  // A loop asks for the same place again and again.
+  std::unordered_map<std::uint32_t, std::string> known;
+  std::unordered_map<std::uint32_t, bool> of_library;
 };
 
 SourceLines::SourceLines(const KernelImage& image) : reader_(std::make_unique<Reader>(image)) {}
@@ -128,6 +133,12 @@ SourceLines::~SourceLines() = default;
 std::string SourceLines::place_of(dma::LocalStoreAddress instruction) const {
   const auto [entry, is_new] = reader_->known.try_emplace(instruction.value);
   if (is_new) entry->second = to_place(reader_->find(instruction.value));
+  return entry->second;
+}
+
+bool SourceLines::is_in_library(dma::LocalStoreAddress instruction) const {
+  const auto [entry, is_new] = reader_->of_library.try_emplace(instruction.value);
+  if (is_new) entry->second = reader_->find(instruction.value).file.find(kLibraryFolder) != std::string::npos;
   return entry->second;
 }
 

@@ -364,7 +364,14 @@ std::optional<RunResult> NativeEngine::answer() {
         0, fault(dma::Rule::kKernelHalt, "a halt-on-condition instruction found its condition true")};
   }
   if (context_.operation() == Operation::kAccess) {
-    if (accesses_ != nullptr) accesses_->on_access(requested_access());
+    constexpr std::uint32_t kHeapBlock = 2, kFreedBlock = 3;  // as spu_kernels/sdk/checked/report.h has them
+    const std::uint32_t what = context_.channel();
+    if (accesses_ == nullptr) return std::nullopt;
+    if (what == kHeapBlock || what == kFreedBlock) {
+      accesses_->on_heap_block(requested_access(), what == kFreedBlock);
+    } else {
+      accesses_->on_access(requested_access());
+    }
     return std::nullopt;
   }
   if (context_.operation() == Operation::kJob) {

@@ -2,6 +2,9 @@
 #define SOFTCELL_CBEA_MAP_H
 /* The problem-state areas of an SPE, as spe_ps_area_get() returns them. A register's offset in its area is that in
  * the Cell's memory map, less the area's own. [CBEA, problem state memory map] documented */
+#if defined(__INCLUDE_LEVEL__) && __INCLUDE_LEVEL__ > 0
+#pragma GCC system_header /* as on a Cell: no warnings of it, whatever standard the program asks for */
+#endif
 
 #ifdef __cplusplus
 extern "C" {

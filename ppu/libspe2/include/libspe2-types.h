@@ -2,6 +2,9 @@
 #define SOFTCELL_LIBSPE2_TYPES_H
 /* Types and constants of the SPE Runtime Management Library. Names, members and values are those of the library's
  * documentation, so that programs compile unchanged. [SPE Runtime Management Library 2.2] documented */
+#if defined(__INCLUDE_LEVEL__) && __INCLUDE_LEVEL__ > 0
+#pragma GCC system_header /* as on a Cell: no warnings of it, whatever standard the program asks for */
+#endif
 
 #include <limits.h>
 #include <signal.h>

@@ -4,8 +4,9 @@
  * softcell::libspe2 (CMake) or `pkg-config --libs --static softcell-libspe2`.
  *
  * All functions may be called by any thread. Unless another result is given, a function returns 0 or a pointer, and
- * on an error -1 or NULL with errno set: ESRCH for a context, gang or handler that there is not (any longer), and what
- * its comment says. What a kernel does wrong, softcell also reports on standard error, with rule and source line.
+ * on an error -1 or NULL with errno set: ESRCH if the context, gang or handler does not exist (any more). Further values
+ * of errno are in each function's comment. What a kernel does wrong, softcell also reports on standard error, with rule
+ * and source line.
  * [SPE Runtime Management Library 2.2] documented */
 
 #include <errno.h>
@@ -24,12 +25,12 @@ extern "C" {
  * EEXIST: a gang has one context with SPE_AFFINITY_MEMORY already. */
 spe_context_ptr_t spe_context_create(unsigned int flags, spe_gang_context_ptr_t gang);
 
-/* As spe_context_create(), beside another context of the same gang; that has no effect on a PC. EINVAL: no gang, or
- * the neighbour belongs to another. EEXIST: the neighbour has two neighbours already. */
+/* Like spe_context_create(). affinity_neighbor names a context of the same gang; its place has no effect on a PC.
+ * EINVAL: no gang, or the neighbour belongs to another. EEXIST: the neighbour has two neighbours already. */
 spe_context_ptr_t spe_context_create_affinity(unsigned int flags, spe_context_ptr_t affinity_neighbor,
                                               spe_gang_context_ptr_t gang);
 
-/* EAGAIN: it runs. Whoever waits for its mailboxes returns with ESRCH. */
+/* EAGAIN: it runs. Threads that wait for its mailboxes return with ESRCH. */
 int spe_context_destroy(spe_context_ptr_t spe);
 
 /* flags: 0, else EINVAL. */
@@ -41,7 +42,7 @@ int spe_gang_context_destroy(spe_gang_context_ptr_t gang);
 /* ---- programs */
 
 /* Opens an SPE program: an image that softcell_add_spu_kernel has made. errno is as open(2) sets
- * it, EFAULT for a null pointer, or ENOEXEC: the file is no such program, for the reason on standard error. */
+ * it, EFAULT for a null pointer, or ENOEXEC: the file is no such program; standard error says why. */
 spe_program_handle_t* spe_image_open(const char* filename);
 
 /* Contexts keep what they have loaded of it. EINVAL: it is not a handle of spe_image_open(). */
@@ -55,19 +56,20 @@ int spe_program_load(spe_context_ptr_t spe, spe_program_handle_t* program);
 
 /* Runs the context until it stops, on a thread of softcell; the caller waits, and is the thread that callbacks run on.
  *
- * entry: SPE_DEFAULT_ENTRY for the beginning of the program; afterwards, where it would go on, to be passed as it is
- * for that. argp, envp: the second and third argument of the program's main; the first is `spe`.
+ * entry: in, SPE_DEFAULT_ENTRY to begin the program. Out, the address at which it would continue: pass it unchanged to
+ * continue. argp, envp: the second and third argument of the program's main; the first is `spe`.
  *
  * Returns 0 when the program has ended, and the code of a stop-and-signal instruction when it has stopped. -1 with
  * errno EINVAL: a null entry, one where a program cannot begin, unknown flags, SPE_RUN_USER_REGS without argp. EBUSY:
  * the context runs. ENOEXEC: nothing was loaded. EIO: a command of the MFC broke a rule, which *stopinfo and standard
- * error say. EFAULT: a halt, an instruction or a channel that there is not, a callback that has failed or has no handler
- * (SPE_CALLBACK_ERROR, with -1), or the emulator has ended the program. EAGAIN: the host has no thread left. */
+ * error say. EFAULT: the program halted, used an invalid instruction or channel, a callback failed or has no handler
+ * (SPE_CALLBACK_ERROR, with -1), or softcell stopped the program at its deadline or for a broken rule. EAGAIN: the host
+ * has no thread left. */
 int spe_context_run(spe_context_ptr_t spe, unsigned int* entry, unsigned int runflags, void* argp, void* envp,
                     spe_stop_info_t* stopinfo);
 
-/* Why the context has stopped: the oldest stop that was not read yet, of the last thousand. ENOTSUP: the context was made without
- * SPE_EVENTS_ENABLE. EAGAIN: there is nothing to be read. EINVAL: a null pointer. */
+/* Why the context stopped: the oldest stop that was not read yet; the last thousand are kept. ENOTSUP: the context was
+ * made without SPE_EVENTS_ENABLE. EAGAIN: there is nothing to be read. EINVAL: a null pointer. */
 int spe_stop_info_read(spe_context_ptr_t spe, spe_stop_info_t* stopinfo);
 
 /* ---- events */
@@ -78,9 +80,9 @@ spe_event_handler_ptr_t spe_event_handler_create(void);
 /* EAGAIN: a thread waits for its events. */
 int spe_event_handler_destroy(spe_event_handler_ptr_t evhandler);
 
-/* Events that are registered already get the new data. Events are waited for as long as their condition holds: until the mailbox was read
- * or filled, the tag status or the stop information was read. EINVAL: a null pointer, or no such context in it. ENOTSUP: unknown events, or
- * a context made without SPE_EVENTS_ENABLE. */
+/* Events that are registered already get the new data. spe_event_wait() returns an event in each call as long as its
+ * condition holds: until the mailbox was read or filled, the tag status or the stop information was read. EINVAL: a null
+ * pointer, or no such context in it. ENOTSUP: unknown events, or a context made without SPE_EVENTS_ENABLE. */
 int spe_event_handler_register(spe_event_handler_ptr_t evhandler, spe_event_unit_t* event);
 int spe_event_handler_deregister(spe_event_handler_ptr_t evhandler, spe_event_unit_t* event);
 
@@ -106,7 +108,7 @@ int spe_mfcio_getf(spe_context_ptr_t spe, unsigned int ls, void* ea, unsigned in
 
 /* The tags of `mask` without a command in flight. mask 0: all tags that have been used since the last call. behavior:
  * SPE_TAG_ALL and SPE_TAG_ANY wait, SPE_TAG_IMMEDIATE does not; else EINVAL, as for a null pointer. EIO: a command
- * could not move its bytes, for the reason on standard error. */
+ * could not move its bytes; standard error says why. */
 int spe_mfcio_tag_status_read(spe_context_ptr_t spe, unsigned int mask, unsigned int behavior,
                               unsigned int* tag_status);
 
@@ -144,13 +146,13 @@ void* spe_ps_area_get(spe_context_ptr_t spe, enum ps_area area);
  * address of the local store is the word behind the stop: the operation in its upper 8 bits, and below them the local-store
  * address of the arguments. Any other result than 0 ends spe_context_run(). */
 
-/* callnum: 4 to 255. EINVAL: one above, a null handler, an unknown mode. EACCES: SPE_CALLBACK_NEW, and there is one, or the
- * number is one of the first four, which are the libraries' and softcell's own: they cannot be updated either. ESRCH: SPE_CALLBACK_UPDATE,
- * and there is none. */
+/* callnum: 4 to 255. EINVAL: it is above 255, the handler is null, the mode is unknown. EACCES: the number is below 4
+ * (these belong to the C library and to softcell), or mode is SPE_CALLBACK_NEW and the number has a handler. ESRCH: mode
+ * is SPE_CALLBACK_UPDATE and the number has no handler. */
 int spe_callback_handler_register(void* handler, unsigned int callnum, unsigned int mode);
 
-/* EINVAL: callnum is out of range. EACCES: it is one of the libraries'. ESRCH: there is none; spe_callback_handler_query() says so of
- * the libraries' numbers, too, as no function of the PPU side stands behind them. */
+/* EINVAL: callnum is out of range. EACCES: it is below 4. ESRCH: it has no handler; spe_callback_handler_query() says so of
+ * the numbers below 4, too, as no function of the PPU side stands behind them. */
 int spe_callback_handler_deregister(unsigned int callnum);
 void* spe_callback_handler_query(unsigned int callnum);
 

@@ -3,6 +3,9 @@
  * [SDK for Multicore Acceleration, sync library] documented */
 #ifndef SOFTCELL_LIBSYNC_H
 #define SOFTCELL_LIBSYNC_H
+#if defined(__INCLUDE_LEVEL__) && __INCLUDE_LEVEL__ > 0
+#pragma GCC system_header /* as on a Cell: no warnings of it, whatever standard the program asks for */
+#endif
 
 #include <stdint.h>
 

@@ -2,6 +2,9 @@
  * special registers and of the floating-point status are not there. [LEXT, PPU-specific intrinsics] documented */
 #ifndef SOFTCELL_PPU_INTRINSICS_H
 #define SOFTCELL_PPU_INTRINSICS_H
+#if defined(__INCLUDE_LEVEL__) && __INCLUDE_LEVEL__ > 0
+#pragma GCC system_header /* as on a Cell: no warnings of it, whatever standard the program asks for */
+#endif
 
 #include <stdint.h>
 #include <string.h>

@@ -10,7 +10,8 @@ namespace softcell_checked {
 
 using softcell_sdk::Environment;
 
-enum Direction : uint32_t { kLoad = 0, kStore = 1 };
+/// A load or store; or the C library tells of a block of its heap, which it has given to the program or is about to take back.
+enum Direction : uint32_t { kLoad = 0, kStore = 1, kHeapBlock = 2, kFreedBlock = 3 };
 
 __attribute__((noinline)) static void report(const volatile void* pointer, size_t bytes, Direction direction,
                                              void* return_address, void* stack_pointer) {

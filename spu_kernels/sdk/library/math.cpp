@@ -463,9 +463,20 @@ Angle reduce_large(double x) {
   return x < 0 ? Angle{-quadrant & 3, -rest} : Angle{quadrant & 3, rest};
 }
 
-/// pi / 2 in three parts, of which the first two have 33 bits, so that their products are exact.
+/// pi / 2 in three parts, of which the first two have 33 bits, so that their products are exact. Of what is larger, the first 24 bits and
+/// the others by themselves.
 Angle reduce(double x) {
-  if (size_of(x) >= 0x1p20) return size_of(x) <= kLargest ? reduce_large(x) : Angle{0, 0};
+  if (size_of(x) > kLargest) return {0, 0};
+  if (size_of(x) >= 0x1p20) {
+    const double first = of_bits(bits_of(x) & ~int64_t{0x1FFFFFFF}), others = x - first;
+    const Angle of_first = reduce_large(first);
+    if (others == 0) return of_first;
+    const Angle of_others = reduce(others);
+    const Angle sum{of_first.quadrant + of_others.quadrant, of_first.rest + of_others.rest};
+    if (size_of(sum.rest) <= kPi / 4) return {sum.quadrant & 3, sum.rest};
+    const double way = with_sign_of(1, sum.rest);
+    return {(sum.quadrant + static_cast<int>(way)) & 3, sum.rest - way * (kPi / 2)};
+  }
   const int64_t k = nearest(x * kTwoOverPi);
   const double n = static_cast<double>(k);
   return {static_cast<int>(k & 3), x - n * 0x1.921FB544p0 - n * 0x1.0B4611A6p-34 - n * 0x1.3198A2E037073p-69};
@@ -608,28 +619,47 @@ extern "C" {
 #define SC_OF_2(name, function)                                        \
   double name(double x, double y) { return computed<function>(x, y); } \
   float name##f(float x, float y) { return computed<function>(x, y); }
-SC_OF_1(sqrt, root_of)
+// Floats of an SPU are always numbers. Doubles may be infinite, or NaN where a function has no value.
+#define SC_NO_NUMBER __builtin_nan("")
+#define SC_OF_1_WITHIN(name, function, outside)                                      \
+  double name(double x) { return (outside) ? SC_NO_NUMBER : computed<function>(x); } \
+  float name##f(float x) { return computed<function>(x); }
+#define SC_LOGARITHM(name, function, zero)                            \
+  double name(double x) {                                             \
+    if (!(x > (zero))) return x == (zero) ? -HUGE_VAL : SC_NO_NUMBER; \
+    return computed<function>(x);                                     \
+  }                                                                   \
+  float name##f(float x) { return computed<function>(x); }
+#define SC_REMAINDER(name, function)                                                           \
+  double name(double x, double y) { return y == 0 ? SC_NO_NUMBER : computed<function>(x, y); } \
+  float name##f(float x, float y) { return computed<function>(x, y); }
+SC_OF_1_WITHIN(sqrt, root_of, x < 0)
 SC_OF_1(cbrt, cube_root)
 SC_OF_1(exp, exponential)
 SC_OF_1(exp2, exponential_of_2)
 SC_OF_1(expm1, exponential_less_1)
-SC_OF_1(log, natural_logarithm)
-SC_OF_1(log2, logarithm_to_2)
-SC_OF_1(log10, logarithm_to_10)
-SC_OF_1(log1p, logarithm_of_1_and)
-SC_OF_1(logb, exponent_of)
+SC_LOGARITHM(log, natural_logarithm, 0)
+SC_LOGARITHM(log2, logarithm_to_2, 0)
+SC_LOGARITHM(log10, logarithm_to_10, 0)
+SC_LOGARITHM(log1p, logarithm_of_1_and, -1)
+double logb(double x) { return x == 0 ? -HUGE_VAL : computed<exponent_of>(x); }
+float logbf(float x) { return computed<exponent_of>(x); }
 SC_OF_1(sin, sine)
 SC_OF_1(cos, cosine)
 SC_OF_1(tan, tangent)
-SC_OF_1(asin, arc_sine)
-SC_OF_1(acos, arc_cosine)
+SC_OF_1_WITHIN(asin, arc_sine, size_of(x) > 1)
+SC_OF_1_WITHIN(acos, arc_cosine, size_of(x) > 1)
 SC_OF_1(atan, arc_tangent)
 SC_OF_1(sinh, hyperbolic_sine)
 SC_OF_1(cosh, hyperbolic_cosine)
 SC_OF_1(tanh, hyperbolic_tangent)
 SC_OF_1(asinh, area_hyperbolic_sine)
-SC_OF_1(acosh, area_hyperbolic_cosine)
-SC_OF_1(atanh, area_hyperbolic_tangent)
+SC_OF_1_WITHIN(acosh, area_hyperbolic_cosine, x < 1)
+double atanh(double x) {
+  if (size_of(x) >= 1) return size_of(x) == 1 ? with_sign_of(HUGE_VAL, x) : SC_NO_NUMBER;
+  return computed<area_hyperbolic_tangent>(x);
+}
+float atanhf(float x) { return computed<area_hyperbolic_tangent>(x); }
 SC_OF_1(floor, floor_of)
 SC_OF_1(ceil, ceil_of)
 SC_OF_1(trunc, truncated)
@@ -640,8 +670,8 @@ SC_OF_1(fabs, size_of)
 SC_OF_2(pow, power)
 SC_OF_2(atan2, arc_tangent_of)
 SC_OF_2(hypot, hypotenuse)
-SC_OF_2(fmod, remainder_towards_zero)
-SC_OF_2(remainder, remainder_to_nearest)
+SC_REMAINDER(fmod, remainder_towards_zero)
+SC_REMAINDER(remainder, remainder_to_nearest)
 SC_OF_2(fmin, lesser)
 SC_OF_2(fmax, greater)
 SC_OF_2(fdim, positive_difference)

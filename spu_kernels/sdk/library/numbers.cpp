@@ -1,6 +1,7 @@
 // Integers: from text, at random, divided, sorted.
 
 #include <ctype.h>
+#include <errno.h>
 #include <limits.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -8,13 +9,19 @@
 
 namespace {
 
-/// A number as strtol reads it: white space, sign, digits. `most` is the largest magnitude; a larger one is cut to it.
+/// A number as strtol reads it: white space, sign, digits. `most` is the largest magnitude; a larger one is cut to it, with
+/// ERANGE. [C17 7.22.1.4]
 struct Parsed {
   uint64_t magnitude = 0;
   bool negative = false;
 };
 
 Parsed parse(const char* text, char** end, int base, uint64_t most, uint64_t most_negative) {
+  if (base < 0 || base == 1 || base > 36) {
+    errno = EINVAL;
+    if (end != nullptr) *end = const_cast<char*>(text);
+    return {};
+  }
   const char* s = text;
   while (isspace(static_cast<unsigned char>(*s))) ++s;
   Parsed number;
@@ -27,15 +34,17 @@ Parsed parse(const char* text, char** end, int base, uint64_t most, uint64_t mos
   }
   if (base == 0) base = *s == '0' ? 8 : 10;
   const uint64_t limit = number.negative ? most_negative : most;
-  bool any = false;
+  bool any = false, too_large = false;
   for (;; ++s) {
     const int c = static_cast<unsigned char>(*s);
     const int digit = isdigit(c) ? c - '0' : isalpha(c) ? tolower(c) - 'a' + 10 : 99;
     if (digit >= base) break;
     any = true;
     const uint64_t b = static_cast<uint64_t>(base), d = static_cast<uint64_t>(digit);
-    number.magnitude = number.magnitude > (limit - d) / b ? limit : number.magnitude * b + d;
+    too_large = too_large || number.magnitude > (limit - d) / b;
+    number.magnitude = too_large ? limit : number.magnitude * b + d;
   }
+  if (too_large) errno = ERANGE;
   if (end != nullptr) *end = const_cast<char*>(any ? s : text);
   return number;
 }

@@ -277,6 +277,9 @@ float strtof(const char* text, char** end) {
     errno = ERANGE;
     return value < 0 ? -HUGE_VALF : HUGE_VALF;
   }
+  if (value != value)
+    return __builtin_copysignf(__builtin_nanf(""),
+                               static_cast<float>(__builtin_signbit(value) != 0 ? -1 : 1));
   return rounded_to_float(value);
 }
 

@@ -39,6 +39,21 @@ long days_before(long year, int month) {
   return (year - 1970) * 365 + leaps + kBefore[month] + (month > 1 && is_leap(year) ? 1 : 0);
 }
 
+/// A week of ISO 8601, which belongs to the year of its Thursday.
+struct Week {
+  int year, number;
+};
+Week week_of(const struct tm& t) {
+  int year = t.tm_year + 1900, thursday = t.tm_yday - (t.tm_wday + 6) % 7 + 3;
+  const auto days_of = [](int y) { return is_leap(y) ? 366 : 365; };
+  if (thursday < 0) {
+    thursday += days_of(--year);
+  } else if (thursday >= days_of(year)) {
+    thursday -= days_of(year++);
+  }
+  return {year, thursday / 7 + 1};
+}
+
 /// What a conversion of strftime() writes. @return  its format for snprintf, and the number; null: it is a text, or none.
 int write_part(char* to, size_t bytes, char kind, const struct tm& t) {
   const int twelve = t.tm_hour % 12 == 0 ? 12 : t.tm_hour % 12;
@@ -96,6 +111,12 @@ int write_part(char* to, size_t bytes, char kind, const struct tm& t) {
       return snprintf(to, bytes, "%d", t.tm_wday == 0 ? 7 : t.tm_wday);
     case 'U':
       return snprintf(to, bytes, "%02d", (t.tm_yday + 7 - t.tm_wday) / 7);
+    case 'G':
+      return snprintf(to, bytes, "%d", week_of(t).year);
+    case 'g':
+      return snprintf(to, bytes, "%02d", week_of(t).year % 100);
+    case 'V':
+      return snprintf(to, bytes, "%02d", week_of(t).number);
     case 'w':
       return snprintf(to, bytes, "%d", t.tm_wday);
     case 'W':

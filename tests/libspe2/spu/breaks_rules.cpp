@@ -36,6 +36,16 @@ int main(uint64_t, uint64_t argp, uint64_t envp) {
     case 10:
       spu_stop(0x2101);
       break;
+    case 11:
+      mfc_get(buffer, envp, 64, 0, 0, 0);
+      if (buffer[0] != 12345) spu_stop(0x2110);  // not waited for
+      break;
+    case 12:
+      mfc_get(buffer, envp, 0, 0, 0, 0);
+      break;
+    case 13:
+      mfc_putlluc(buffer, envp + 16, 0, 0);
+      break;
     default:
       break;
   }

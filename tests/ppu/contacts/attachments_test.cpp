@@ -106,7 +106,7 @@ INSTANTIATE_TEST_SUITE_P(Attachments, SolvedBy, ::testing::Values(Who::kPpu, Who
 
 /// A hundred times the weight of the patch hangs from it: most of it is a rigid body that is welded to the soft one's lower end.
 TEST_P(SolvedBy, AWeldCarriesAHundredTimesItsPatchWithoutCreep) {
-  if (kSlowBuild) GTEST_SKIP() << "with sanitizers, which have the others";
+  if (kSlowBuild) GTEST_SKIP() << "too slow with sanitizers, which run the other tests of this file";
   AttachedWorld w(GetParam());
   SoftBody<3>& body = w.add(block({0.4f, 0.4f, 0.4f}), stiff(), {0, 2, 0});
   const auto top = top_of(body);
@@ -136,7 +136,8 @@ TEST_P(SolvedBy, AWeldCarriesAHundredTimesItsPatchWithoutCreep) {
 
 /// A pendulum, and one that falls into its rope.
 TEST_P(SolvedBy, ARopeIsNeverLongerThanItsLength) {
-  if (kSlowBuild && GetParam() == Who::kSpes) GTEST_SKIP() << "with sanitizers, which have the others";
+  if (kSlowBuild && GetParam() == Who::kSpes)
+    GTEST_SKIP() << "too slow with sanitizers, which run it on the PPU";
   for (const Vector3f& throw_at :
        {Vector3f(0, 0, 0), Vector3f(4, 0, 1), Vector3f(0, -6, 0), Vector3f(8, 8, 0)}) {
     AttachedWorld w(GetParam());
@@ -159,7 +160,8 @@ TEST_P(SolvedBy, ARopeIsNeverLongerThanItsLength) {
 
 /// What hangs keeps swinging: a rope takes no more energy than a simulation without damping may lose.
 TEST_P(SolvedBy, APendulumKeepsItsEnergy) {
-  if (kSlowBuild && GetParam() == Who::kSpes) GTEST_SKIP() << "with sanitizers, which have the others";
+  if (kSlowBuild && GetParam() == Who::kSpes)
+    GTEST_SKIP() << "too slow with sanitizers, which run it on the PPU";
   AttachedWorld w(GetParam());
   SoftBody<3>& body = w.add(block({0.3f, 0.3f, 0.3f}), settings_of(kCell, 1, 0.3f), {2, 2, 0});
   w.bodies.attach(body, Patch<3>::of_particles(particles_where(body, [](const Vector3f&) { return true; })),
@@ -200,7 +202,8 @@ std::vector<float> forces_on(Who who, float break_force, bool suddenly, Attachme
 }
 
 TEST_P(SolvedBy, BreakWhenTheyWouldCarryMore) {
-  if (kSlowBuild && GetParam() == Who::kSpes) GTEST_SKIP() << "with sanitizers, which have the others";
+  if (kSlowBuild && GetParam() == Who::kSpes)
+    GTEST_SKIP() << "too slow with sanitizers, which run it on the PPU";
   for (const AttachmentKind kind : {AttachmentKind::kWeld, AttachmentKind::kHinge, AttachmentKind::kRope}) {
     for (const bool suddenly : {false, true}) {
       const std::vector<float> held = forces_on(GetParam(), 1e9f, suddenly, kind);
@@ -260,7 +263,8 @@ Eigen::Vector3d spin_of(const btRigidBody& body) {
 
 /// A compliant attachment is stretched: if its ends also move sideways, its two impulses do not lie on one line.
 TEST_P(SolvedBy, TwoFreeBodiesThatAreApartKeepTheirAngularMomentum) {
-  if (kSlowBuild && GetParam() == Who::kSpes) GTEST_SKIP() << "with sanitizers, which have the others";
+  if (kSlowBuild && GetParam() == Who::kSpes)
+    GTEST_SKIP() << "too slow with sanitizers, which run it on the PPU";
   for (const AttachmentKind kind : {AttachmentKind::kWeld, AttachmentKind::kHinge, AttachmentKind::kRope}) {
     for (const float compliance : {0.0f, 1e-4f, 1e-3f, 1e-2f}) {
       AttachedWorld w(GetParam(), {0, 0, 0});
@@ -286,7 +290,8 @@ TEST_P(SolvedBy, TwoFreeBodiesThatAreApartKeepTheirAngularMomentum) {
 }
 
 TEST_P(SolvedBy, AFreeBodyAndARigidOneThatAreApartKeepTheirAngularMomentum) {
-  if (kSlowBuild && GetParam() == Who::kSpes) GTEST_SKIP() << "with sanitizers, which have the others";
+  if (kSlowBuild && GetParam() == Who::kSpes)
+    GTEST_SKIP() << "too slow with sanitizers, which run it on the PPU";
   for (const AttachmentKind kind : {AttachmentKind::kWeld, AttachmentKind::kHinge, AttachmentKind::kRope}) {
     for (const float compliance : {0.0f, 1e-4f, 1e-3f, 1e-2f}) {
       AttachedWorld w(GetParam(), {0, 0, 0});
@@ -402,7 +407,7 @@ TEST_P(SolvedBy, AHingeTurnsAboutItsAxisOnly) {
 }
 
 TEST(Attachments, AHungBodyCarriesOneThatStandsOnIt) {
-  if (kSlowBuild) GTEST_SKIP() << "with sanitizers, which have the others";
+  if (kSlowBuild) GTEST_SKIP() << "too slow with sanitizers, which run the other tests of this file";
   for (const bool on_spes : {false, true}) {
     std::unique_ptr<SpeRuntime> spes =
         on_spes ? std::make_unique<SpeRuntime>(SpeRuntimeOptions{.spes = 2}) : nullptr;
@@ -934,7 +939,7 @@ TEST(Attachments, LimitTheirOwnPushesOnly) {
 
 /// What is attached costs this much more a substep. (docs/guide/soft-bodies.md has figures; here only that it is no multiple.)
 TEST(Attachments, APatchOfTwentyParticlesCostsMicroseconds) {
-  if (kSlowBuild) GTEST_SKIP() << "with sanitizers";
+  if (kSlowBuild) GTEST_SKIP() << "it measures time, which sanitizers change";
   const auto model = make_soft_body_model(block({0.4f, 0.4f, 0.4f}), settings_of(kCell));
   SoftBody<3> body(model);
   PatchParticles<3> patch;

@@ -228,7 +228,7 @@ TEST(Conservation, OfAngularMomentumWithARigidBodyHoweverFastBothMove) {
 }
 
 TEST(Conservation, RandomScenesHaveNoEnergyFromNothing) {
-  if (kSlowBuild) GTEST_SKIP() << "with sanitizers, which have the others";
+  if (kSlowBuild) GTEST_SKIP() << "too slow with sanitizers, which run the other tests of this file";
   const char* const text = std::getenv("SOFTCELL_RANDOM_SCENES");
   const unsigned count = text != nullptr ? static_cast<unsigned>(std::atoi(text)) : 15;
   for (unsigned seed = 1; seed <= count; ++seed) RandomScene(seed).expect_sane(seed);

@@ -161,7 +161,7 @@ std::ptrdiff_t stay_inside_out_in_a_shaft(SolverFactory* solvers, std::size_t& m
 
 /// Of 900 cells. Two, with SPEs, do not come back within that second.
 TEST(CrushedCells, NearlyAllComeBackInAShaft) {
-  if (kSlowBuild) GTEST_SKIP() << "with sanitizers, which have the others";
+  if (kSlowBuild) GTEST_SKIP() << "too slow with sanitizers, which run the other tests of this file";
   std::size_t reported = 0;
   EXPECT_LE(stay_inside_out_in_a_shaft(nullptr, reported), 4);
   EXPECT_GT(reported, 10u) << "the fall crushes some for a moment, and the step reports it";

@@ -25,7 +25,7 @@ int seconds_at_rest() {
 }
 
 TEST(HeavyBody, OfTenTimesItsMassRestsOnASoftOneForGood) {
-  if (kSlowBuild) GTEST_SKIP() << "with sanitizers, which have the others";
+  if (kSlowBuild) GTEST_SKIP() << "too slow with sanitizers, which run the other tests of this file";
   for (const float alpha : {0.5f, 1.0f}) {
     ContactWorld w;
     w.add_floor();

@@ -51,7 +51,7 @@ class ThrownThings {
 
 /// They were seen a substep late, 1.7 cells deep, and stayed there for as long as pushes took to bring them out.
 TEST(MovingObstacles, WhatIsThrownIsMetWhereverItBegins) {
-  if (kSlowBuild) GTEST_SKIP() << "with sanitizers, which have the others";
+  if (kSlowBuild) GTEST_SKIP() << "too slow with sanitizers, which run the other tests of this file";
   ThrownThings things;
   for (int place = 0; place < 8; ++place) {
     for (Thrown& thing : things.all()) {

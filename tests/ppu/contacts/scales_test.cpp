@@ -33,14 +33,14 @@ float lowest_particle(float cell, float alpha, int half_width, float gravity, in
 }
 
 TEST(SoftOnRigid, NoParticleOfAVerySoftBodySinksIn) {
-  if (kSlowBuild) GTEST_SKIP() << "with sanitizers, which have the others";
+  if (kSlowBuild) GTEST_SKIP() << "too slow with sanitizers, which run the other tests of this file";
   for (const float alpha : {0.0f, 0.02f})
     for (const int half_width : {1, 2})
       EXPECT_GT(lowest_particle(0.1f, alpha, half_width, 9.81f, 2, 150), -0.1f) << alpha << ' ' << half_width;
 }
 
 TEST(SoftOnRigid, NoParticleSinksInUnderStrongGravityWithOneSubstep) {
-  if (kSlowBuild) GTEST_SKIP() << "with sanitizers, which have the others";
+  if (kSlowBuild) GTEST_SKIP() << "too slow with sanitizers, which run the other tests of this file";
   for (const float alpha : {0.02f, 0.3f, 1.0f})
     EXPECT_GT(lowest_particle(0.05f, alpha, 2, 300, 1, 150), -0.1f) << alpha;
 }
@@ -76,7 +76,7 @@ Scaled run_at_scale(float cell) {
 
 /// From cells of 1 mm to cells of 100 m. The scene is 16 cells wide, so this is 0.3 % of it.
 TEST(SoftOnRigid, TheSceneEndsInTheSameShapeForTheSameCostAtEveryScale) {
-  if (kSlowBuild) GTEST_SKIP() << "with sanitizers, which have the others";
+  if (kSlowBuild) GTEST_SKIP() << "too slow with sanitizers, which run the other tests of this file";
   const Scaled expected = run_at_scale(0.1f);
   EXPECT_GT(expected.contacts, 1000u);
   for (const float cell : {0.001f, 0.003f, 0.01f, 1.0f, 100.0f}) {

@@ -23,7 +23,7 @@ using Eigen::Vector3f;
 TriangleMesh cube(float edge, float cell) { return make_box({edge, edge, edge}, cell); }
 
 TEST(SurfaceContacts, WhatIsDrawnRestsOnWhatIsBelow) {
-  if (kSlowBuild) GTEST_SKIP() << "with sanitizers, which have the others";
+  if (kSlowBuild) GTEST_SKIP() << "too slow with sanitizers, which run the other tests of this file";
   constexpr float kCell = 0.1f;
   const TriangleMesh meshes[] = {cube(8 * kCell, kCell), cube(7.3f * kCell, kCell),
                                  make_sphere(3.4f * kCell, 12), make_penguin(0.9f)};
@@ -250,7 +250,7 @@ TEST(SurfaceContacts, AWallInTheFloorsMeshHoldsFromBothSides) {
 
 /// The middle of a thin sheet is always near what it slides on: where it has been must not lag behind.
 TEST(SurfaceContacts, AThinSheetSlidesOverAHillOfTriangles) {
-  if (kSlowBuild) GTEST_SKIP() << "with sanitizers, which have the others";
+  if (kSlowBuild) GTEST_SKIP() << "too slow with sanitizers, which run the other tests of this file";
   const auto height = [](float x) { return x > 0 ? -0.3f * x * x : 0.0f; };
   for (const bool upwards : {true, false}) {
     btTriangleMesh hill;
@@ -366,7 +366,7 @@ TEST(SurfaceContacts, TwoBodiesKeepTheirMomenta) {
 }
 
 TEST(SurfaceContacts, AHeavyBoxRestsOnASoftOne) {
-  if (kSlowBuild) GTEST_SKIP() << "with sanitizers, which have the others";
+  if (kSlowBuild) GTEST_SKIP() << "too slow with sanitizers, which run the other tests of this file";
   constexpr float kCell = 0.15f;
   ContactWorld w;
   w.add_floor();
@@ -395,7 +395,7 @@ TEST(SurfaceContacts, ABoxThrownAtABodyKeepsTheirMomentum) {
 }
 
 TEST(SurfaceContacts, ThinAndPointedThingsStayOutside) {
-  if (kSlowBuild) GTEST_SKIP() << "with sanitizers, which have the others";
+  if (kSlowBuild) GTEST_SKIP() << "too slow with sanitizers, which run the other tests of this file";
   constexpr float kCell = 0.1f;
   struct Thing {
     const char* name;
@@ -435,7 +435,7 @@ TEST(SurfaceContacts, ThinAndPointedThingsStayOutside) {
 }
 
 TEST(SurfaceContacts, WhatRestsSleepsAndWakesWhereItIsTouched) {
-  if (kSlowBuild) GTEST_SKIP() << "with sanitizers, which have the others";
+  if (kSlowBuild) GTEST_SKIP() << "too slow with sanitizers, which run the other tests of this file";
   ContactWorld w;
   w.add_floor();
   w.bodies.let_sleep(SleepSettings{.speed = 0.1f, .seconds = 0.5f});
@@ -652,7 +652,7 @@ TEST(SurfaceContacts, TwoBodiesExchangeTheirStates) {
 }
 
 TEST(SurfaceContacts, KindsOfShapesHoldABody) {
-  if (kSlowBuild) GTEST_SKIP() << "with sanitizers, which have the others";
+  if (kSlowBuild) GTEST_SKIP() << "too slow with sanitizers, which run the other tests of this file";
   const auto mesh = [](std::vector<btVector3> corners, btTriangleMesh& triangles) {
     triangles.addTriangle(corners[0], corners[1], corners[2]);
     triangles.addTriangle(corners[0], corners[2], corners[3]);

@@ -199,12 +199,12 @@ TEST(BulletFracture, PiecesStayOnTheirSideOfTriangles) {
 }
 
 TEST(BulletFracture, KeepsBothMomentaForAThousandSteps) {
-  if (kSlowBuild) GTEST_SKIP() << "with sanitizers, which have the others";
+  if (kSlowBuild) GTEST_SKIP() << "too slow with sanitizers, which run the other tests of this file";
   expect_both_momenta(nullptr);
 }
 
 TEST(BulletFracture, KeepsBothMomentaForAThousandStepsOnSpes) {
-  if (kSlowBuild) GTEST_SKIP() << "with sanitizers, which have the others";
+  if (kSlowBuild) GTEST_SKIP() << "too slow with sanitizers, which run the other tests of this file";
   SpeRuntime spes({.spes = 2});
   expect_both_momenta(&spes);
 }

@@ -18,6 +18,12 @@ static void calendar(void) {
   CHECK(strftime(text, sizeof text, "%c|%D|%F|%T|%R|%r|%x|%X|%C|%h|%n|%t|%z|%Z", &t) > 0);
   CHECK(strcmp(text, "Sun Sep  9 01:46:40 2001|09/09/01|2001-09-09|01:46:40|01:46|01:46:40 AM|09/09/01|01:46:40|20|Sep|"
                      "\n|\t|+0000|UTC") == 0);
+  CHECK(strftime(text, sizeof text, "%G-W%V %g", &t) > 0 && strcmp(text, "2001-W36 01") == 0);
+  t.tm_year = 127, t.tm_mon = 0, t.tm_mday = 1; /* a Friday */
+  CHECK(mktime(&t) > 0 && strftime(text, sizeof text, "%G-W%V", &t) > 0 && strcmp(text, "2026-W53") == 0);
+  t.tm_year = 124, t.tm_mon = 11, t.tm_mday = 30; /* a Monday */
+  CHECK(mktime(&t) > 0 && strftime(text, sizeof text, "%G-W%V %g", &t) > 0 && strcmp(text, "2025-W01 25") == 0);
+  gmtime_r(&billion, &t);
   CHECK(strftime(text, 4, "%Y", &t) == 0 && strftime(text, 5, "%Y", &t) == 4);
   CHECK(strcmp(asctime(&t), "Sun Sep  9 01:46:40 2001\n") == 0 && strcmp(ctime(&first), "Thu Jan  1 00:00:00 1970\n") == 0);
   CHECK(strcmp(asctime_r(&t, text), asctime(&t)) == 0 && localtime_r(&leap, &t)->tm_mday == 29);

@@ -6,6 +6,8 @@
 
 static int near(double a, double b) { return fabs(a - b) <= 1e-11 * (fabs(b) + 1e-3); }
 
+static int is_none(double v) { return v != v; }
+
 static void functions(void) {
   CHECK(sqrt(2) == 0x1.6A09E667F3BCDp0 && near(cbrt(-27), -3) && near(hypot(3, 4), 5) && near(pow(2, 0.5), sqrt(2)) && near(pow(-2, 3), -8));
   CHECK(near(exp(1), M_E) && near(exp2(-3), 0.125) && near(expm1(1e-9), 1.0000000005e-9) && near(log(M_E), 1) && near(log2(8), 3));
@@ -16,6 +18,13 @@ static void functions(void) {
   CHECK(near(asinh(1), 0.881373587019543) && near(acosh(2), 1.3169578969248167) && near(atanh(0.5), 0.5493061443340549));
   CHECK(floor(-2.5) == -3 && ceil(-2.5) == -2 && trunc(-2.5) == -2 && round(-2.5) == -3 && rint(-2.5) == -2 && nearbyint(3.5) == 4);
   CHECK(fmod(-7, 3) == -1 && remainder(7, 4) == -1 && remainder(6, 4) == -2 && fmin(1, 2) == 1 && fmax(1, 2) == 2 && fdim(3, 1) == 2);
+  CHECK(log(0) == -HUGE_VAL && log2(-0.0) == -HUGE_VAL && log10(0) == -HUGE_VAL && log1p(-1) == -HUGE_VAL && logb(0) == -HUGE_VAL);
+  CHECK(atanh(1) == HUGE_VAL && atanh(-1) == -HUGE_VAL && log(HUGE_VAL) == HUGE_VAL && sqrt(0) == 0);
+  CHECK(is_none(log(-1)) && is_none(log1p(-2)) && is_none(sqrt(-1)) && is_none(asin(2)) && is_none(acos(-2)) && is_none(acosh(0.5)) && is_none(atanh(2)));
+  CHECK(is_none(fmod(1, 0)) && is_none(remainder(1, 0)) && is_none(log(NAN)));
+  CHECK(near(sin(1e12), -0.6112387023768895) && near(cos(1e12), 0.7914463018528902) && near(sin(1e15), 0.8582727931702359));
+  CHECK(near(sin(-123456789.12345679), -0.9998509309072103) && near(cos(123456789012345.67), 0.9995484960939164));
+  CHECK(near(sin(1.0000000000001235e+20), 0.9644579013252669) && near(tan(1e15), 0.8582727931702359 / -0.5131937377869703));
   CHECK(copysign(1, -0.0) == -1 && fabs(-1.5) == 1.5 && fdim(1, 3) == 0);
 }
 

@@ -36,6 +36,20 @@ static void numbers(void) {
   CHECK(strtol("  -0x1Fz", &end, 0) == -31 && *end == 'z' && atoi("42") == 42);
   CHECK(strtol("99999999999", NULL, 10) == LONG_MAX && strtoul("4294967295", NULL, 10) == ULONG_MAX);
   CHECK(strtol("-2147483648", NULL, 10) == LONG_MIN && strtoll("-12345678901", NULL, 10) == -12345678901ll);
+  errno = 0;
+  CHECK(strtol("2147483647", NULL, 10) == LONG_MAX && strtol("-2147483648", NULL, 0) == LONG_MIN && errno == 0);
+  CHECK(strtoul("4294967295", NULL, 10) == ULONG_MAX && strtoull("0xFFFFFFFFFFFFFFFF", NULL, 0) == ULLONG_MAX && errno == 0);
+  CHECK(strtol("2147483648", &end, 10) == LONG_MAX && errno == ERANGE && *end == '\0');
+  errno = 0;
+  CHECK(strtol("-99999999999000", &end, 10) == LONG_MIN && errno == ERANGE && *end == '\0');
+  errno = 0;
+  CHECK(strtoul("4294967296", NULL, 10) == ULONG_MAX && errno == ERANGE);
+  errno = 0;
+  CHECK(strtoll("9223372036854775808", NULL, 10) == LLONG_MAX && errno == ERANGE);
+  errno = 0;
+  CHECK(strtoull("99999999999999999999999", NULL, 10) == ULLONG_MAX && errno == ERANGE);
+  errno = 0;
+  CHECK(strtol("12", &end, 37) == 0 && errno == EINVAL && *end == '1' && strtol("12", NULL, 1) == 0 && strtol("z", NULL, 36) == 35);
   CHECK(strtof("0.1", NULL) == 0.1f && strtof("-16777219", NULL) == -16777220 &&
         strtof("16777217", NULL) == 16777216);
   CHECK(strtof("1.1754944e-38", NULL) == 0x1p-126f && strtof("1e-39", NULL) == 0 &&
@@ -155,9 +169,13 @@ static void other_names(void) {
   CHECK(more != NULL && ((uintptr_t)more & 127) == 0 && more[0] == 0 && more[3] == 9);
   CHECK(realloc_align(more, 100, 5) == more && realloc_align(more, 300000, 7) == NULL);
   free_align(more);
+  char* end;
   char* const brief = alloca(300);
   memset(brief, 7, 300);
   CHECK(brief[299] == 7);
+  errno = 0;
+  CHECK(malloc(1000000) == NULL && errno == ENOMEM && calloc(1000, 1000) == NULL);
+  CHECK(strtof("nan", NULL) != 1.5f && strtof("-nan(", &end) != 1.5f && *end == '(');
   CHECK(getenv("PATH") == NULL && strtold("2.5", NULL) == 2.5L);
   CHECK(setvbuf(stdout, NULL, _IONBF, 0) == 0);
   setbuf(stdout, NULL);

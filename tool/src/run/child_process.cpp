@@ -141,28 +141,16 @@ ChildEnd run_child(const std::vector<std::string>& words, const std::map<std::st
   return {WEXITSTATUS(status), 0};
 }
 
-ScratchFolder::ScratchFolder() {
-  std::string name = std::filesystem::temp_directory_path() / "softcell-run-XXXXXX";
-  if (mkdtemp(name.data()) == nullptr)
-    throw std::runtime_error("cannot make the temporary folder " + name + ": " + std::strerror(errno));
-  path_ = name;
-}
+std::string RunFolder::text(const std::string& name) const { return text_of(path() / name); }
 
-ScratchFolder::~ScratchFolder() {
-  std::error_code ignored;
-  std::filesystem::remove_all(path_, ignored);
-}
-
-std::string ScratchFolder::text(const std::string& name) const { return text_of(path_ / name); }
-
-std::vector<std::string> ScratchFolder::texts(const std::string& extension) const {
+std::vector<std::string> RunFolder::texts(const std::string& extension) const {
   // Of numbers, the shorter one is the smaller one.
   const auto comes_before = [](const std::filesystem::path& a, const std::filesystem::path& b) {
     const std::size_t a_length = a.native().size(), b_length = b.native().size();
     return a_length != b_length ? a_length < b_length : a < b;
   };
   std::set<std::filesystem::path, decltype(comes_before)> files;
-  for (const auto& file : std::filesystem::directory_iterator(path_)) files.insert(file.path());
+  for (const auto& file : std::filesystem::directory_iterator(path())) files.insert(file.path());
   std::vector<std::string> texts;
   for (const std::filesystem::path& file : files)
     // A process that was ended while it wrote has left a hidden file.

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "softcell/base/temporary_folder.h"
 #include "verb/interrupt.h"
 
 namespace softcell::tool {
@@ -33,22 +34,17 @@ ChildEnd run_child(const std::vector<std::string>& words, const std::map<std::st
                    const InterruptGuard& guard, Interrupts interrupts,
                    const std::filesystem::path& output = {}, int input = STDIN_FILENO);
 
-/// A new folder among the temporary files. The destructor removes it with its contents.
-class ScratchFolder {
+/// The files that runs of a program write.
+class RunFolder {
  public:
-  ScratchFolder();
-  ~ScratchFolder();
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-
-  const std::filesystem::path& path() const { return path_; }
+  const std::filesystem::path& path() const { return folder_.path(); }
   /// The text of a file in the folder; empty if there is none.
   std::string text(const std::string& name) const;
   /// The texts of the files in the folder with this ending (".json"), sorted by the numbers that the files' names are.
   std::vector<std::string> texts(const std::string& extension) const;
 
  private:
-  std::filesystem::path path_;
+  base::TemporaryFolder folder_{"softcell-run"};
 };
 
 }  // namespace softcell::tool

@@ -68,6 +68,17 @@ std::map<std::string, std::string> variables_of(const RunOptions& options) {
   return variables;
 }
 
+/// The options that the outcome of a run depends on, as words of the command line.
+std::string options_of_outcome(const RunOptions& options) {
+  std::string words = fmt::format("--dma {}", options.dma);
+  if (options.turns) words += " --turns";
+  if (options.checked) words += " --checked";
+  if (options.allocations) words += " --allocations";
+  if (options.low_memory) words += " --low-memory";
+  if (options.deadline_ms) words += fmt::format(" --deadline {}", *options.deadline_ms);
+  return words;
+}
+
 /// A file that an option asks for.
 struct Output {
   explicit Output(const NamedFile& named) : files({named}), file(files.open(named.file)) {}
@@ -79,7 +90,7 @@ struct Output {
 /// @param input  of the program, whose output is collected, and whose interrupts are ours, too; null: all are those of this process.
 ProgramRun run_once(const RunOptions& options, const InterruptGuard& guard, KeptInput* input = nullptr) {
   SC_ASSERT(!options.words.empty(), "a run of no program under {}", options.dma);
-  const ScratchFolder folder;
+  const RunFolder folder;
   const std::string output = "output";
   auto variables = variables_of(options);
   variables["SOFTCELL_REPORT"] = folder.path() / "%p.json";
@@ -180,7 +191,7 @@ int run_many(const RunOptions& options, const InterruptGuard& guard, Output& jso
   RunOptions seeded = options;
   seeded.turns = true;
   SC_ASSERT(options.seeds > 0, "{} runs under {} seeds", options.words.size(), options.seeds);
-  const ScratchFolder folder;
+  const RunFolder folder;
   KeptInput input(folder.path() / "input");
   ProgramRun first;
   std::uint64_t seed = 0;
@@ -215,9 +226,8 @@ int run_many(const RunOptions& options, const InterruptGuard& guard, Output& jso
   } else if (differs) {
     fmt::print(stderr,
                "softcell: the outcome depends on the order of transfers or SPEs; see it again with softcell "
-               "run --dma "
-               "random:{} --turns{} -- {}\n",
-               seed, options.checked ? " --checked" : "", quoted_for_shell(options.words));
+               "run {} -- {}\n",
+               options_of_outcome(seeded), quoted_for_shell(options.words));
   } else {
     fmt::print(stderr, "softcell: {} seeds: {} {} under each, with the same output; {}\n", seed,
                options.words.front(), first.ending(), first.summary());

@@ -116,6 +116,8 @@ std::string Coverage::lcov() const {
   const ls_sim::SourceLines lines(image_);
   std::map<std::string, SourceFile> files;
   for (const ls_sim::ImageObject& function : ls_sim::code_of(image_)) {
+    if (lines.is_in_library(function.begin))
+      continue;  // which no user has written, nor need have the sources of
     const ls_sim::SourcePlace begin = lines.source_of(function.begin);
     if (!begin.file.empty() && !function.name.empty())
       files[begin.file].functions.try_emplace(begin.line, Function{function.name, executed(function.begin)});

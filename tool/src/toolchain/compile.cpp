@@ -32,6 +32,7 @@ Words command_of(Language language, bool checked, const Options& options, const 
     append(command, {"-x", "c++"});
     append(command, flags_of(settings::kCxxFlags, places));
     command.push_back(options.cxx_standard);
+    if (options.older_cxx) command.push_back("-Wno-register");  // which older sources have
     if (checked) append(command, flags_of(settings::kCxxCheckedFlags, places));
     append(command, {"-isystem", (places.sdk / "..").lexically_normal().string()});
   }

@@ -44,6 +44,13 @@ void require_program(const std::string& file) {
         "sources with softcell-spu-gcc, or run it by softcell spu run");
   }
   if (!is_elf) throw std::invalid_argument(file + " is no ELF file; embed what softcell-spu-gcc has linked");
+  constexpr char kObject = 1, kExecutable = 2, k32Bits = 1, kHostMachine = 62;
+  const bool is_softcells = header[4] == k32Bits && header[18] == kHostMachine && header[19] == 0;
+  if (is_softcells && header[16] == kObject)
+    throw std::invalid_argument(
+        file + " is an object that was not linked; link it with softcell-spu-gcc, and embed the program");
+  if (!is_softcells || header[16] != kExecutable)
+    throw std::invalid_argument(file + " is no SPU program; embed what softcell-spu-gcc has linked");
 }
 
 /// The compiler of the PPU side; it assembles, so it knows the host.

@@ -6,6 +6,7 @@
 #include <map>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 
 #include "compile.h"
 #include "embed.h"
@@ -37,11 +38,16 @@ constexpr const char kHelp[] =
 
 /// Answers the questions that build systems ask compilers. @return  whether the words were such a question
 bool answer_question(const Words& words) {
+  constexpr std::string_view kPrintFile = "-print-file-name=";
   if (words.size() != 1) return false;
   if (words[0] == "--version") {
     std::printf("softcell-spu-gcc (softcell) %s\n", settings::kVersion);
   } else if (words[0] == "-dumpversion") {
     std::printf("%s\n", settings::kVersion);
+  } else if (words[0] == "-print-libgcc-file-name") {
+    std::printf("libgcc.a\n");  // as GCC does with a file that it does not find: programs need none
+  } else if (words[0].starts_with(kPrintFile)) {
+    std::printf("%s\n", words[0].c_str() + kPrintFile.size());
   } else if (words[0] == "-dumpmachine") {
     std::printf("spu\n");
   } else if (words[0] == "-v") {

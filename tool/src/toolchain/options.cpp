@@ -163,8 +163,11 @@ class Parser {
       }
     } else if (is_of_language(word)) {
       options_.compiler.push_back(word);
-    } else if (starts_with_any(word, "-f", "-m", "-O", "-nost", "-nodef", "-shared-libgcc", "-static-lib",
-                               "-no-")) {
+    } else if (is_any(word, "-fexceptions", "-frtti")) {
+      options_.notes.push_back(word + ": programs have no exceptions and no RTTI here");
+    } else if (is_any(word, "-pg", "-p") ||
+               starts_with_any(word, "-f", "-m", "-O", "--param=", "-save-temps", "--save-temps", "-nost",
+                               "-nodef", "-shared-libgcc", "-static-lib", "-no-")) {
       options_.meaningless.push_back(word);
     } else {
       throw std::invalid_argument("unknown option " + word);
@@ -253,7 +256,8 @@ class Parser {
     if (word.find("++") == word.npos) {
       options_.compiler.push_back(word);
     } else if (std::ranges::any_of(kOld, [&](const char* year) { return word.ends_with(year); })) {
-      options_.meaningless.push_back(word);
+      options_.notes.push_back(word + ": C++ is compiled as C++17 here");
+      options_.older_cxx = true;
       if (word.find("gnu") == word.npos) options_.cxx_standard = "-std=c++17";
     } else {
       options_.compiler.push_back(word);
@@ -345,7 +349,10 @@ Options parse_compiler_options(const Words& words, Language language) {
 Options parse_linker_options(const Words& words) { return Parser(words, Language::kC).linker_options(); }
 
 void note_meaningless(const std::string& command, const Options& options) {
-  if (options.meaningless.empty() || std::getenv("SOFTCELL_QUIET") != nullptr) return;
+  if (std::getenv("SOFTCELL_QUIET") != nullptr) return;
+  for (const std::string& note : options.notes)
+    std::fprintf(stderr, "%s: note: %s\n", command.c_str(), note.c_str());
+  if (options.meaningless.empty()) return;
   std::string text;
   for (const std::string& option : options.meaningless) text += " " + option;
   std::fprintf(stderr, "%s: note: without meaning on a PC:%s\n", command.c_str(), text.c_str());

@@ -29,11 +29,13 @@ struct Options {
   Words compiler;             ///< warnings and options of the language
   /// Of C++ sources, unless `compiler` has another one. Like an SPU's compiler, it knows GNU's words.
   std::string cxx_standard = "-std=gnu++17";
+  bool older_cxx = false;                    ///< -std= names an older C++ than there is
   Words linker;                              ///< -Map and the like, in the form that ld takes
   std::optional<std::uint32_t> stack_bytes;  ///< -Wl,-z,stack-size=BYTES
   bool relocatable = false;                  ///< -r
   bool verbose = false;
   Words meaningless;  ///< options that have no meaning here
+  Words notes;        ///< sentences on options that cannot be followed
 };
 
 /// Parses the options of the compiler. @param language  of standard input and of `.c` files: for softcell-spu-g++ it is C++.
@@ -43,7 +45,7 @@ Options parse_compiler_options(const Words& words, Language language);
 /// Parses the options of ld.
 Options parse_linker_options(const Words& words);
 
-/// Prints once which options have no meaning, unless SOFTCELL_QUIET is set.
+/// Prints once which options have no meaning or cannot be followed, unless SOFTCELL_QUIET is set.
 void note_meaningless(const std::string& command, const Options& options);
 
 }  // namespace softcell::toolchain

@@ -11,7 +11,6 @@
 #include <cstdlib>
 #include <cstring>
 #include <stdexcept>
-#include <system_error>
 
 extern char** environ;
 
@@ -94,23 +93,8 @@ void become(const Words& command) {
   throw std::runtime_error("cannot run " + command.front() + ": " + std::strerror(errno));
 }
 
-ScratchFolder::ScratchFolder() {
-  std::error_code none;
-  std::filesystem::path folder = std::filesystem::temp_directory_path(none);
-  if (none) folder = "/tmp";  // TMPDIR names no folder, which GCC does not mind either
-  std::string name = folder / "softcell-spu-XXXXXX";
-  if (mkdtemp(name.data()) == nullptr)
-    throw std::runtime_error("cannot make the temporary folder " + name + ": " + std::strerror(errno));
-  path_ = name;
-}
-
-ScratchFolder::~ScratchFolder() {
-  std::error_code ignored;
-  std::filesystem::remove_all(path_, ignored);
-}
-
 std::filesystem::path ScratchFolder::file(const std::string& name) {
-  const auto folder = path_ / std::to_string(files_++);
+  const auto folder = folder_.path() / std::to_string(files_++);
   std::filesystem::create_directory(folder);
   return folder / name;
 }

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "softcell/base/temporary_folder.h"
+
 namespace softcell::toolchain {
 
 using Words = std::vector<std::string>;
@@ -34,19 +36,14 @@ std::string output_of(const Words& command);
 /// Replaces this process by another program. @throws std::runtime_error  it cannot be run.
 [[noreturn]] void become(const Words& command);
 
-/// A temporary folder, which the destructor removes.
+/// The temporary files of a command.
 class ScratchFolder {
  public:
-  ScratchFolder();
-  ~ScratchFolder();
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-
   /// A name in the folder that no other call gets.
   std::filesystem::path file(const std::string& name);
 
  private:
-  std::filesystem::path path_;
+  base::TemporaryFolder folder_{"softcell-spu"};
   int files_ = 0;
 };
 

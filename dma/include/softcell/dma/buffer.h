@@ -73,8 +73,15 @@ class Buffer {
   std::span<const T> span() const { return elements_; }
   T* data() { return elements_.data(); }
   const T* data() const { return elements_.data(); }
-  T& operator[](std::size_t index) { return elements_[index]; }
-  const T& operator[](std::size_t index) const { return elements_[index]; }
+  /// @pre index < size()
+  T& operator[](std::size_t index) {
+    SC_ASSERT(index < size(), "element {} of a buffer of {}", index, size());
+    return elements_[index];
+  }
+  const T& operator[](std::size_t index) const {
+    SC_ASSERT(index < size(), "element {} of a buffer of {}", index, size());
+    return elements_[index];
+  }
 
   std::size_t size() const { return elements_.size(); }
   std::size_t size_bytes() const { return elements_.size_bytes(); }

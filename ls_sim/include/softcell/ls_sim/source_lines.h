@@ -31,6 +31,9 @@ class SourceLines {
   /// The same with the whole name of the file.
   SourcePlace source_of(dma::LocalStoreAddress instruction) const;
 
+  /// Whether the instruction belongs to the C library of the local store, which no user of the SDK has written.
+  bool is_in_library(dma::LocalStoreAddress instruction) const;
+
  private:
   struct Reader;
   std::unique_ptr<Reader> reader_;

@@ -1,6 +1,9 @@
 #ifndef SOFTCELL_PSL1GHT_SYS_SYSTIME_H
 #define SOFTCELL_PSL1GHT_SYS_SYSTIME_H
 /* Time. [PSL1GHT, sys/systime.h] documented */
+#if defined(__INCLUDE_LEVEL__) && __INCLUDE_LEVEL__ > 0
+#pragma GCC system_header /* as on a Cell: no warnings of it, whatever standard the program asks for */
+#endif
 
 #include <ppu-types.h>
 #include <time.h>
