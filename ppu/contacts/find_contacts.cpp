@@ -40,14 +40,14 @@ void find_contacts(const ContactBody& a, EndCells& cells_of_a, const ContactBody
     };
     const auto place = cells_of_b.finder().find(to, is_apart);
     if (!place) return;
-    const Vector3f from = point.anchor.of(a.positions), begin = opposite(b, *place, from);
-    const Vector3f along =
-        itself ? Vector3f(Vector3f::Zero()) : Vector3f(inner_place(*a.model, cell, a.positions) - from);
-    const auto way_out = way_out_of(b, *place, point.allowance, along, begin);
+    const auto way_out =
+        itself ? way_out_of(b, *place, point.allowance)
+               : way_out_of(b, *place, point.allowance, inner_place(*a.model, cell, a.ends) - to);
     if (!way_out) return;
     SoftContact& contact = contacts.emplace_back();
     contact.a = model.held(point.anchor);
-    contact.b = b.model->held(anchor_in_cell(lattice_b, place->cell, begin));
+    contact.b = b.model->held(
+        anchor_in_cell(lattice_b, place->cell, opposite(b, *place, point.anchor.of(a.positions))));
     contact.point = to;
     contact.normal = way_out->normal;
     const Vector3f v = contact.a.of(a.velocities) - contact.b.of(b.velocities);

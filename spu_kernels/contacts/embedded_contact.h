@@ -78,67 +78,25 @@ inline bool are_alike(vec_float4 product, vec_float4 squares) {
   return spu_extract(spu_cmpgt(signed_square, spu_mul(squares, spu_splats(0.25f))), 0) != 0;
 }
 
-/// The place in the cell, at the substep's beginning, of what is at a place in the world then: there both sides of a contact are held.
-/// Otherwise impulse and reaction would turn the two bodies. While the point still approaches, it may be somewhat outside of the cell.
-/// @param s  at the end
-__attribute__((noinline)) inline vec_float4 place_at_beginning(const BodyInStore& other,
-                                                               const PointInCell& point,
-                                                               const InverseThere& inverse, vec_float4 s,
-                                                               vec_float4 in_world) {
-  const vec_float4 farthest = spu_splats(1.0f);
-  vec_float4 held = s;
-  for (int i = 0; i < 3; ++i) {
-    const vec_float4 off =
-        only_xyz(spu_sub(in_world, value_of(other.cells[point.cell].corner, shares_at(held), other.begins)));
-    held = spu_madd(inverse.times_volume(off), inverse.by_volume, held);
-    held = larger(smaller(held, farthest), negative(farthest));
-  }
-  return held;
-}
-
-/// The field, where a point that is deep from the beginning is then, of the face by which it leaves.
-/// @param begin, cell  the place in the body at rest and its cell  @param nearest  the field there
-/// @param in_world     the point at the beginning, metres
-inline vec_float4 field_of_face_at_beginning(const BodyInStore& mine, const BodyInStore& other,
-                                             const PointInCell& point, const InverseThere& inverse,
-                                             vec_float4 begin, uint32_t cell, vec_float4 nearest,
-                                             vec_float4 in_world) {
+/// The field of the face by which a deep point has come in; or `nearest`, the field at the point, if that has nearly the same direction.
+inline vec_float4 field_of_entered_face(const BodyInStore& mine, const BodyInStore& other,
+                                        const PointInCell& point, const InverseThere& inverse, vec_float4 s,
+                                        vec_float4 nearest) {
   vec_float4 inside;
   if (mine.ends == other.ends || !inner_place(mine, point.cell_of_point, inside)) return nearest;
-  const vec_float4 along = only_xyz(spu_sub(inside, in_world));
-  const vec_float4 of_nearest = inverse.gradient(nearest), square = dot_in_all_lanes(of_nearest, of_nearest);
-  if (are_alike(dot_in_all_lanes(of_nearest, along), spu_mul(square, dot_in_all_lanes(along, along))))
-    return nearest;
+  const vec_float4 along = only_xyz(spu_sub(inside, point.end));
   const vec_float4 way = only_xyz(spu_mul(inverse.times_volume(along), inverse.by_volume));
+  const vec_float4 outwards = inverse.gradient(nearest), square = dot_in_all_lanes(outwards, outwards);
+  const vec_float4 squares = spu_mul(square, dot_in_all_lanes(along, along));
   const vec_float4 length_squared = dot_in_all_lanes(way, way);
   if (!(spu_extract(length_squared, 0) > 0x1.4484cp-100f)) return nearest;  // 1e-30
+  if (are_alike(dot_in_all_lanes(outwards, along), squares)) return nearest;
   const vec_float4 direction = spu_mul(way, exact_reciprocal_sqrt(length_squared));
-  const vec_float4 met = field_of_met_face(other, begin, cell, nearest, direction);
-  // Compares squares of distances in the world. The face that the line meets may be twice as far.
-  const vec_float4 of_met = inverse.gradient(met);
-  const vec_float4 near = spu_mul(spu_mul(nearest, nearest), dot_in_all_lanes(of_met, of_met));
-  const vec_float4 far = spu_mul(spu_mul(met, met), square);
-  return spu_extract(spu_cmpgt(spu_mul(near, spu_splats(4.0f)), far), 3) != 0 ? met : nearest;
-}
-
-/// The field, at the end, of the face by which a deep point leaves.
-/// @param nearest   the field at the end  @param s, begin  places in the cell  @param in_world  the point at the beginning, metres
-__attribute__((noinline)) inline vec_float4 field_of_way_out(
-    const BodyInStore& mine, const BodyInStore& other, const PointInCell& point, const InverseThere& inverse,
-    vec_float4 s, vec_float4 begin, vec_float4 nearest, vec_float4 in_world) {
-  const vec_short8 grid = other.cells[point.cell].place;
-  const vec_int4 low = {spu_extract(grid, 0), spu_extract(grid, 1), spu_extract(grid, 2), 0};
-  const vec_float4 middle = only_xyz(spu_add(spu_convtf(low, 0), spu_splats(0.5f)));
-  const float allowance = point.allowance * spu_extract(reciprocal(spu_splats(other.spacing)), 0);
-  const WayAtRest way = {only_xyz(spu_add(middle, begin)), only_xyz(spu_sub(s, begin)), point.cell,
-                         kFindDeep + allowance};
-  uint32_t cell = point.cell;
-  vec_float4 here;
-  if (!field_at_place(other, way.begin, cell, here) || !(spu_extract(here, 3) < -way.deep))
-    return field_of_entered_face(other, way, nearest);
-  const vec_float4 field =
-      field_of_face_at_beginning(mine, other, point, inverse, way.begin, cell, here, in_world);
-  return field_farther(field, way.way);
+  const vec_float4 field = field_of_face(other, point.cell, s, nearest, direction);
+  const vec_float4 others = inverse.gradient(field);
+  const bool is_same =
+      are_alike(dot_in_all_lanes(outwards, others), spu_mul(square, dot_in_all_lanes(others, others)));
+  return is_same ? nearest : field;
 }
 
 /// @param mine   the point's body  @param other  the body in whose cell the point is
@@ -150,20 +108,9 @@ inline bool make_contact(const BodyInStore& mine, const BodyInStore& other, cons
   const vec_float4 half = spu_splats(0.5f);
   const vec_float4 s = larger(smaller(point.s, half), negative(half));
   const InverseThere inverse(point);
-  const vec_ushort8 own_corner = mine.cells[point.cell_of_point].corner;
-  Shares own;
-  vec_float4 own_begin, held;
-  const auto place_both_at_beginning = [&]() __attribute__((always_inline)) {
-    own = shares_at(point.s_of_point);
-    own_begin = value_of(own_corner, own, mine.begins);
-    held = place_at_beginning(other, point, inverse, s, own_begin);
-  };
   vec_float4 field = field_at(there.field, s);
-  const bool is_deep = spu_extract(field, 3) < -kFindDeep;
-  if (is_deep) {
-    place_both_at_beginning();
-    field = field_of_way_out(mine, other, point, inverse, s, held, field, own_begin);
-  }
+  if (spu_extract(field, 3) < -kFindDeep)
+    field = field_of_entered_face(mine, other, point, inverse, s, field);
   const vec_float4 outwards = inverse.gradient(field);
   const vec_float4 square = dot_in_all_lanes(outwards, outwards);
   if (!(spu_extract(square, 0) > 0x1.4484cp-100f)) return false;  // 1e-30
@@ -172,7 +119,19 @@ inline bool make_contact(const BodyInStore& mine, const BodyInStore& other, cons
   const float distance = spu_extract(spu_mul(splat_lane<3>(field), flat), 0) + point.allowance;
   if (distance > kFindNear * other.spacing) return false;
 
-  if (!is_deep) place_both_at_beginning();
+  const vec_ushort8 own_corner = mine.cells[point.cell_of_point].corner;
+  const Shares own = shares_at(point.s_of_point);
+  const vec_float4 own_begin = value_of(own_corner, own, mine.begins);
+  // At the step's beginning both sides are held at the same place: otherwise impulse and reaction would turn the two
+  // bodies. While the point still approaches, this place may be somewhat outside of the cell.
+  const vec_float4 farthest = spu_splats(1.0f);
+  vec_float4 held = s;
+  for (int i = 0; i < 3; ++i) {
+    const vec_float4 off =
+        only_xyz(spu_sub(own_begin, value_of(there.corner, shares_at(held), other.begins)));
+    held = spu_madd(inverse.times_volume(off), inverse.by_volume, held);
+    held = larger(smaller(held, farthest), negative(farthest));
+  }
   const Shares others = shares_at(held);
   const vec_float4 their_begin = value_of(there.corner, others, other.begins);
   const vec_float4 their_end = value_of(there.corner, others, other.ends);
