@@ -66,7 +66,7 @@ class Hash {
     add(cell_size, half_width, density, alpha, damping, friction, frequency, damping_time);
     add_unless(restitution, 0.0f);
     add_unless(contacts, true);
-    add_unless(self_contacts, true);
+    if (!self_contacts) add('s');
     if (plasticity) add('p', plasticity->yield, plasticity->creep, plasticity->limit);
     if (!fracture) return;
     const auto& [stretch, turn, least_cells] = *fracture;

@@ -229,8 +229,8 @@ class Box2dSoftBodies {
   /// Contacts of circles are in Box2D's own list.
   void append_contacts(std::vector<Contact2d>& contacts) const;
 
-  SoftBodyTimes times()
-      const;  ///< the time that these bodies have taken inside step(), begin_step(), end_step() and begin_ahead()
+  /// The time that these bodies have taken inside step(), begin_step(), end_step() and begin_ahead().
+  SoftBodyTimes times() const;
 
  private:
   struct Impl;

@@ -8,13 +8,13 @@ namespace softcell::ppu {
 /// The time that the soft bodies of a BulletSoftBodies or Box2dSoftBodies have taken since its construction, by parts. Processor times are
 /// those of the thread that steps the world.
 struct SoftBodyTimes {
-  std::chrono::nanoseconds gather{
-      0};  ///< processor time: particles from the engine, inner ones integrated, breaks, sleep
+  /// Processor time: particles from the engine, inner ones integrated, breaks, sleep.
+  std::chrono::nanoseconds gather{0};
   std::chrono::nanoseconds solve{0};     ///< processor time of the solver on this thread
   std::chrono::nanoseconds apply{0};     ///< processor time: velocities to the engine
   std::chrono::nanoseconds contacts{0};  ///< processor time of contacts of surfaces
-  std::chrono::nanoseconds wait{
-      0};  ///< elapsed time from when the step needed the solver's result until it had it
+  /// Elapsed time from when the step needed the solver's result until it had it.
+  std::chrono::nanoseconds wait{0};
 
   /// The processor time of all parts.
   std::chrono::nanoseconds processor() const { return gather + solve + apply + contacts; }
