@@ -6,6 +6,10 @@
 #include <cstddef>
 #include <cstdint>
 
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wunused-function"
+#include "../../spu_kernels/sdk/checked/report.h"
+#pragma GCC diagnostic pop
 #include "../../spu_kernels/sdk/library/assist.h"
 #include "assisted/assisted_calls.h"
 #include "native/kernel_context.h"
@@ -51,6 +55,11 @@ SC_SAME_OPERATION(kAccess);
 SC_SAME_OPERATION(kJob);
 SC_SAME_OPERATION(kSync);
 SC_SAME_OPERATION(kAssist);
+#define SC_SAME_TOLD(name) SC_SAME_NUMBER(native::Told, softcell_checked, name)
+SC_SAME_TOLD(kLoad);
+SC_SAME_TOLD(kStore);
+SC_SAME_TOLD(kHeapBlock);
+SC_SAME_TOLD(kFreedBlock);
 
 static_assert(assisted::kC99Call == kAssistedCalls + softcell_library::kC99);
 static_assert(assisted::kPosixCall == kAssistedCalls + softcell_library::kPosix);

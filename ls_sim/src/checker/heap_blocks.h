@@ -60,8 +60,8 @@ class HeapBlocks {
     return block.first + block.second.whole;
   }
 
-  std::map<std::uint32_t, Block>
-      blocks_;  ///< by address; those that were freed stay until others take their place
+  /// By address. Those that were freed stay until others take their place.
+  std::map<std::uint32_t, Block> blocks_;
 };
 
 }  // namespace softcell::ls_sim

@@ -48,6 +48,9 @@ enum class Operation : std::uint32_t {
   kFault = 0xFF'FFFF
 };
 
+/// What Operation::kAccess tells of, as spu_kernels/sdk/checked/report.h numbers it.
+enum class Told : std::uint32_t { kLoad = 0, kStore = 1, kHeapBlock = 2, kFreedBlock = 3 };
+
 constexpr std::uint32_t request_of(Operation operation, std::uint32_t channel = 0) {
   return static_cast<std::uint32_t>(operation) << 8 | channel;
 }

@@ -41,6 +41,7 @@ namespace {
 
 using native::KernelContext;
 using native::Operation;
+using native::Told;
 
 constexpr bool is_filler(std::byte b) { return b == kFiller; }
 constexpr std::uint32_t kCanaryBytes = 256;  // watched below the declared stack
@@ -364,11 +365,10 @@ std::optional<RunResult> NativeEngine::answer() {
         0, fault(dma::Rule::kKernelHalt, "a halt-on-condition instruction found its condition true")};
   }
   if (context_.operation() == Operation::kAccess) {
-    constexpr std::uint32_t kHeapBlock = 2, kFreedBlock = 3;  // as spu_kernels/sdk/checked/report.h has them
-    const std::uint32_t what = context_.channel();
+    const auto what = static_cast<Told>(context_.channel());
     if (accesses_ == nullptr) return std::nullopt;
-    if (what == kHeapBlock || what == kFreedBlock) {
-      accesses_->on_heap_block(requested_access(), what == kFreedBlock);
+    if (what == Told::kHeapBlock || what == Told::kFreedBlock) {
+      accesses_->on_heap_block(requested_access(), what == Told::kFreedBlock);
     } else {
       accesses_->on_access(requested_access());
     }
