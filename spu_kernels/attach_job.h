@@ -26,10 +26,10 @@ static_assert(sizeof(AttachRigid) == 16, "a quadword");
 
 /// What an attachment does, and which records it has: the next ones in the job's arrays.
 enum AttachKind : uint32_t {
-  kAttachPoints =
-      0,  ///< holds each particle of a patch: points. All are solved at once, with their rigid body.
-  kAttachPlaces =
-      1,  ///< holds places that particles have in common: up to four rows, solved at once; nothing moves a rigid body
+  /// Holds each particle of a patch: points. All are solved at once, with their rigid body.
+  kAttachPoints = 0,
+  /// Holds places that particles have in common: up to four rows, solved at once; nothing moves a rigid body.
+  kAttachPlaces = 1,
   kAttachHinge = 2,  ///< holds places at a rigid body that moves: rows, solved one after the other
   kAttachRope = 3    ///< holds a place within a distance: one row
 };

@@ -22,8 +22,8 @@ namespace {
 
 enum Tag : uint32_t { kTagJob = 0, kTagMemory = 1 };
 
-constexpr uint32_t kQueueSlots =
-    16;  // more would only wait at the queue  [CBEA, MFC SPU command queue] documented
+// More would only wait at the queue. [CBEA, MFC SPU command queue] documented
+constexpr uint32_t kQueueSlots = 16;
 
 struct alignas(128) LocalStoreMap {
   TransfersJob job;

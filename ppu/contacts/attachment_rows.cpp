@@ -20,7 +20,7 @@ namespace {
 constexpr float kMostPushInCells = 0.25f;
 // Places of several particles correct only this share: pushes deform the patch, too, which takes some substeps to recover.
 constexpr float kPushShareOfPlaces = 0.2f;
-// Up to this gap all angular momentum that it gives is taken back.
+// Up to this gap an attachment holds particles, and all angular momentum that it gives is taken back.
 constexpr float kMostApartInCells = 0.5f;
 
 /// Mass, middle and spread of a patch.
@@ -468,14 +468,17 @@ void AttachmentRows<kDimension>::renumber(bool of_b, std::vector<std::uint32_t> 
 template <int kDimension>
 void AttachmentRows<kDimension>::append_held(std::uint32_t a, const AttachmentFrame<kDimension>& frame,
                                              const Rigid* rigid, float step,
-                                             std::vector<HeldParticle<kDimension>>& held) const {
+                                             std::vector<HeldParticle<kDimension>>& held) {
+  breaks_off_ = false;
   if (settings_.kind != AttachmentKind::kWeld || settings_.compliance > 0) return;
   if (rigid != nullptr && rigid->inverse_mass > 0) return;
+  // Attachments that contradict each other hold nothing: in the last substep this one's ends were apart.
+  if (state_.gap > kMostApartInCells * sides_.a.spacing) return;
   for (const Row& row : rows_) {
     const Vector point = frame.to_world(row.own);
     const Vector velocity = rigid != nullptr ? AttachedRigid<kDimension>::velocity_at(*rigid, point)
                                              : frame.velocity_at(row.own, step);
-    held.push_back({a, a_.particle[row.a.first], velocity});
+    held.push_back({a, a_.particle[row.a.first], velocity, settings_.break_force * step, 0});
   }
 }
 

@@ -25,6 +25,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -68,6 +69,8 @@ template <int kDimension>
 struct HeldParticle {
   std::uint32_t body = 0, particle = 0;
   Eigen::Vector<float, kDimension> velocity = Eigen::Vector<float, kDimension>::Zero();  ///< m/s
+  float most_impulse = std::numeric_limits<float>::infinity();  ///< kg m/s: the attachment breaks above it
+  std::uint32_t attachment = 0;                                 ///< its number in the substep
 };
 
 /// The particles of a patch as they are when it is attached.
@@ -113,9 +116,9 @@ class AttachmentRows {
     Rigid* rigid = nullptr;
   };
   /// Appends the particles of a that a weld without compliance holds to a frame that impulses do not move; for other attachments none.
-  /// @param rigid  null: only the program moves the frame
+  /// Call it before begin(). @param rigid  null: only the program moves the frame
   void append_held(std::uint32_t a, const AttachmentFrame<kDimension>& frame, const Rigid* rigid, float step,
-                   std::vector<HeldParticle<kDimension>>& held) const;
+                   std::vector<HeldParticle<kDimension>>& held);
   /// Begins a substep. The sides must stay in place until finish().
   void begin(const Sides& sides, float step);
   /// Whether one iteration gives the final result, as long as nothing else changes the sides.
@@ -131,8 +134,10 @@ class AttachmentRows {
   void take_back_spin(bool is_alone);
   bool takes_back_spin() const;
 
-  /// Whether the impulse after the last iteration of the last substep exceeds the break force.
-  bool broke() const { return broke_; }
+  /// Whether the impulse after the last iteration of the last substep exceeds the break force, or break_off() was called in it.
+  bool broke() const { return broke_ || breaks_off_; }
+  /// Lets the attachment break at the substep's end, whatever it carries. Call it after append_held(), which begins a substep.
+  void break_off() { breaks_off_ = true; }
   const AttachmentState<kDimension>& state() const { return state_; }
   /// @param a, b  positions of the bodies' particles  @param frame  used if b is empty
   AttachmentEnds<kDimension> ends(std::span<const Vector> a, std::span<const Vector> b,
@@ -226,6 +231,7 @@ class AttachmentRows {
   float softness_ = 0;  // 1/kg: compliance of a row over the step squared
   bool pushes_ = false;
   bool broke_ = false;
+  bool breaks_off_ = false;
   bool is_direct_ = false;
   bool with_rigid_at_once_ = false;
   bool places_at_once_ = false;

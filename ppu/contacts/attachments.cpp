@@ -31,10 +31,13 @@ template <int kDimension>
 void Attachments<kDimension>::append_held(std::span<const Rigid> rigids, float step,
                                           std::vector<HeldParticle<kDimension>>& held) {
   constexpr std::uint32_t kNone = AttachmentInStep<kDimension>::kNone;
-  for (const AttachmentInStep<kDimension>& attachment : all_) {
+  for (std::uint32_t i = 0; i < all_.size(); ++i) {
+    const AttachmentInStep<kDimension>& attachment = all_[i];
     if (attachment.b != kNone) continue;
     const Rigid* const rigid = attachment.rigid != kNone ? &rigids[attachment.rigid] : nullptr;
+    const std::size_t first = held.size();
     attachment.rows->append_held(attachment.a, attachment.frame, rigid, step, held);
+    for (HeldParticle<kDimension>& particle : std::span(held).subspan(first)) particle.attachment = i;
   }
 }
 

@@ -40,9 +40,11 @@ class AttachmentSolver {
   virtual bool empty() const = 0;
   /// Whether two soft bodies do not collide because they are attached. @pre a < b
   virtual bool parts(std::uint32_t a, std::uint32_t b) const = 0;
-  /// Appends the particles that are held by frames that impulses do not move. Call it before begin().
+  /// Appends the particles that are held by frames that impulses do not move. Call it first in each substep.
   virtual void append_held(std::span<const Rigid> rigids, float step,
                            std::vector<HeldParticle<kDimension>>& held) = 0;
+  /// Lets an attachment break at the substep's end. @param attachment  HeldParticle::attachment
+  virtual void break_off(std::uint32_t attachment) = 0;
   /// @param bodies, rigids  must stay in place until finish()
   virtual void begin(std::span<const AttachedBody<kDimension>> bodies, std::span<Rigid> rigids,
                      float step) = 0;
@@ -77,6 +79,7 @@ class Attachments final : public AttachmentSolver<kDimension> {
   bool parts(std::uint32_t a, std::uint32_t b) const override;
   void append_held(std::span<const Rigid> rigids, float step,
                    std::vector<HeldParticle<kDimension>>& held) override;
+  void break_off(std::uint32_t attachment) override { all_[attachment].rows->break_off(); }
   void begin(std::span<const AttachedBody<kDimension>> bodies, std::span<Rigid> rigids, float step) override;
   void iterate(int iterations) override;
   void finish() override;

@@ -117,9 +117,8 @@ class Bounces {
     std::uint32_t contact = 0;
     Whole *a = nullptr, *b = nullptr;
     Eigen::Vector3d point{0, 0, 0};  ///< world, when a touches
-    Eigen::Vector3d point_b{
-        0, 0,
-        0};  ///< likewise; of a rigid b, which changes its velocity at once, as it is at the substep's beginning
+    /// Likewise; of a rigid b, which changes its velocity at once, as it is at the substep's beginning.
+    Eigen::Vector3d point_b{0, 0, 0};
     Eigen::Vector3d normal{0, 1, 0};
     double target = 0, mobility = 1, impulse = 0;
     Eigen::Vector3d friction_impulse{0, 0, 0};

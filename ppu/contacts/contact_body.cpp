@@ -2,7 +2,9 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "ppu/surfaces/crack_sides.h"
@@ -209,12 +211,14 @@ Eigen::Vector3f inner_place(const ContactModel& model, std::uint32_t cell,
   return anchor_in_cell(model.lattice(), inner.cell, inner.xi).of(positions);
 }
 
-void ContactBody::hold(std::uint32_t particle, const Eigen::Vector3f& velocity) {
+void ContactBody::hold(std::uint32_t particle, const Eigen::Vector3f& velocity, float most_impulse) {
   SC_ASSERT(!asleep && particle < positions.size(), "particle {} of {} is held, of a body that sleeps or not",
             particle, positions.size());
   if (inverse_masses_if_held.empty())
     inverse_masses_if_held.assign(inverse_masses.begin(), inverse_masses.end());
   held_velocities.resize(positions.size());
+  held_impulses.resize(positions.size());
+  held_impulses[particle] = holds(particle) ? std::max(held_impulses[particle], most_impulse) : most_impulse;
   inverse_masses_if_held[particle] = 0;
   held_velocities[particle] = velocity;
 }
@@ -224,6 +228,14 @@ bool ContactBody::holds(const Anchor& anchor) const {
   for (std::size_t k = 0; k < 8; ++k)
     if (anchor.share[k] != 0 && holds(anchor.particle[k])) return true;
   return false;
+}
+
+float ContactBody::most_impulse_if_held(const Anchor& anchor) const {
+  float least = std::numeric_limits<float>::infinity();
+  for (std::size_t k = 0; k < 8; ++k)
+    if (anchor.share[k] != 0 && holds(anchor.particle[k]))
+      least = std::min(least, held_impulses[anchor.particle[k]]);
+  return least;
 }
 
 Eigen::Vector3f ContactBody::velocity_if_held(const Anchor& anchor) const {

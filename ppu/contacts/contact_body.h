@@ -40,6 +40,12 @@ struct Anchor {
     for (std::size_t k = 0; k < 8; ++k)
       values[particle[k]] += share[k] * inverse_masses[particle[k]] * impulse;
   }
+  float share_of(std::uint32_t of) const {
+    float sum = 0;
+    for (std::size_t k = 0; k < 8; ++k)
+      if (particle[k] == of) sum += share[k];
+    return sum;
+  }
   /// 1/kg: the anchor's own change of velocity by an impulse of 1.
   float mobility(std::span<const float> inverse_masses) const {
     float sum = 0;
@@ -75,9 +81,8 @@ class ContactModel {
   const Lattice<3>& lattice() const { return *lattice_; }
   std::span<const float> masses() const { return masses_; }  ///< kg, of each particle
   float mass() const { return mass_; }                       ///< kg, of the body
-  float thickness() const {
-    return thickness_;
-  }  ///< metres: extent of the lattice along the axis along which it is thinnest
+  /// Metres: extent of the lattice along the axis along which it is thinnest.
+  float thickness() const { return thickness_; }
 
   bool is_flat() const { return !margin_cells_.empty(); }
   /// Whether a cell is not one of the body's own.
@@ -143,18 +148,21 @@ struct ContactBody {
   std::vector<float> inverse_masses_if_held;
   KnownSides* sides = nullptr;                   ///< of the walls near the body; not null if there are any
   std::vector<Eigen::Vector3f> held_velocities;  ///< m/s, of the held particles
+  std::vector<float> held_impulses;              ///< kg m/s: what holds a held particle breaks above it
   float friction = 0.5f;
   float restitution = 0;
 
   float spacing() const { return model->lattice().spacing; }
   const Lattice<3>& lattice() const { return model->lattice(); }
   /// Holds a particle until the substep's end. @pre the body is awake
-  void hold(std::uint32_t particle, const Eigen::Vector3f& velocity);
+  void hold(std::uint32_t particle, const Eigen::Vector3f& velocity, float most_impulse);
   bool holds(std::uint32_t particle) const {
     return !inverse_masses_if_held.empty() && inverse_masses_if_held[particle] == 0;
   }
   /// Whether a held particle has a share in the anchor.
   bool holds(const Anchor& anchor) const;
+  /// kg m/s: the least that breaks what holds one of the anchor's particles.
+  float most_impulse_if_held(const Anchor& anchor) const;
   /// m/s: the velocity that a rigid body feels if it presses on held particles.
   Eigen::Vector3f velocity_if_held(const Anchor& anchor) const;
 };

@@ -56,6 +56,13 @@ bool moves_freely_along(const ContactRigid& rigid, const Vector3f& direction) {
   return !rigid.held || direction.dot(rigid.held->linear * direction) > kNearlyAll * rigid.inverse_mass;
 }
 
+/// Whether a rigid body can give way to particles that are held. If its supports or its engine hold it, too, the particles have to: an
+/// impulse between two that do not move has no limit.
+bool gives_way(const ContactRigid& rigid, const SoftContact& contact) {
+  constexpr float kLeast = 1.0f / 64;  // of a free body's mobility: a stack has less than one body
+  return rigid.mobility(contact.acts_at, contact.normal) > kLeast * rigid.inverse_mass;
+}
+
 /// From a point to the anchor's place before the step.
 Vector3f arm_of(const auto& anchor, const ContactBody& body, const Vector3f& point) {
   return of_anchor(anchor, body, [&](std::size_t i) -> Vector3f { return body.positions[i] - point; });
@@ -143,7 +150,7 @@ void ContactSolver::find_held(std::span<const ContactRigid> rigids, float step) 
   held_.clear();
   attachments->append_held(rigids, step, held_);
   for (const HeldParticle<3>& held : held_)
-    if (!bodies_[held.body].asleep) bodies_[held.body].hold(held.particle, held.velocity);
+    if (!bodies_[held.body].asleep) bodies_[held.body].hold(held.particle, held.velocity, held.most_impulse);
 }
 
 bool ContactSolver::may_touch(std::uint32_t a, std::uint32_t b, std::span<const BodyInSubstep> bodies) const {
@@ -316,6 +323,52 @@ void ContactSolver::find_supports(std::span<ContactRigid> rigids, const RigidLin
   supports_.hold(rigids, links, presses_, step);
 }
 
+/// Finds out which rigid bodies feel what holds the particles that they press on, and not the particles' own masses. An attachment that
+/// cannot stop one breaks: if it were felt, the particles would keep the impulse that it does not carry. Call it after find_supports().
+void ContactSolver::find_who_feels_what_holds(std::span<const ContactRigid> rigids) {
+  for (std::size_t i = pair_groups_; i < group_count_; ++i) {
+    Group& group = groups_[i];
+    if (!group.on_held) continue;
+    const ContactBody& body = bodies_[group.a];
+    for (SoftContact& contact : group.contacts)
+      contact.on_held = contact.on_held && gives_way(rigids[contact.rigid], contact);
+    add_up_held_presses(group);
+    for (SoftContact& contact : group.contacts) {
+      if (!contact.on_held) continue;
+      const auto press = std::ranges::find(held_presses_, contact.rigid, &HeldPress::rigid);
+      const float impulse = press->impulse_to_stop(rigids[contact.rigid], body.velocity_if_held(contact.a));
+      contact.on_held = impulse <= body.most_impulse_if_held(contact.a);
+      if (!contact.on_held) break_off(group.a, contact.a, impulse);
+    }
+  }
+}
+
+/// Adds up the contacts of a group by the rigid bodies that press on held particles.
+void ContactSolver::add_up_held_presses(const Group& group) {
+  held_presses_.clear();
+  for (const SoftContact& contact : group.contacts) {
+    if (!contact.on_held) continue;
+    auto press = std::ranges::find(held_presses_, contact.rigid, &HeldPress::rigid);
+    if (press == held_presses_.end()) press = held_presses_.insert(press, {.rigid = contact.rigid});
+    press->points += contact.acts_at;
+    press->normals += contact.normal;
+    ++press->contacts;
+  }
+}
+
+float ContactSolver::HeldPress::impulse_to_stop(const ContactRigid& by, const Vector3f& held_velocity) const {
+  const Vector3f point = points / static_cast<float>(contacts), normal = normals.normalized();
+  const float mobility = by.mobility(point, normal);
+  return mobility > 0 ? normal.dot(by.velocity_at(point) - held_velocity) / mobility : 0;
+}
+
+/// Breaks attachments that hold one of the anchor's particles and do not carry an impulse, kg m/s.
+void ContactSolver::break_off(std::uint32_t body, const Anchor& anchor, float impulse) {
+  for (const HeldParticle<3>& held : held_)
+    if (held.body == body && held.most_impulse < impulse && anchor.share_of(held.particle) != 0)
+      attachments->break_off(held.attachment);
+}
+
 void ContactSolver::release_supports() {
   if (supports_.empty()) return;
   for (std::size_t i = pair_groups_; i < group_count_; ++i) {
@@ -461,6 +514,7 @@ void ContactSolver::step(std::span<const BodyInSubstep> bodies, std::span<const 
   put_in_order();
   hold_pushes_of_crushed_bodies();
   find_supports(rigids, links, step);
+  find_who_feels_what_holds(rigids);
   if (group_count_ != 0 || has_attachments()) {
     if (worker != nullptr)
       solve_with_worker(rigids, step);

@@ -136,6 +136,14 @@ class ContactSolver {
       return by_worker ? solved.contacts[contact].impulse : contacts[contact].impulse;
     }
   };
+  /// A rigid body that presses on held particles of a soft one, at some points.
+  struct HeldPress {
+    std::uint32_t rigid = 0;  ///< index
+    int contacts = 0;
+    Eigen::Vector3f points{0, 0, 0}, normals{0, 0, 0};  ///< sums
+    /// kg m/s: with one impulse in the middle of the points.
+    float impulse_to_stop(const ContactRigid& by, const Eigen::Vector3f& held_velocity) const;
+  };
   using Pair = ContactOrder::Pair;
   static constexpr std::size_t kManyAttachments = 16;
 
@@ -162,6 +170,9 @@ class ContactSolver {
   void find_presses(const Group& group, std::span<const ContactRigid> rigids);
   void find_supports(std::span<ContactRigid> rigids, const RigidLinks& links, float step);
   void release_supports();
+  void find_who_feels_what_holds(std::span<const ContactRigid> rigids);
+  void add_up_held_presses(const Group& group);
+  void break_off(std::uint32_t body, const Anchor& anchor, float impulse);
   void bounce(std::span<ContactRigid> rigids, float step);
   void remember_who_presses(std::span<const ContactRigid> rigids);
   void find_touched_cells();
@@ -251,6 +262,7 @@ class ContactSolver {
   std::vector<Group*> of_set_;  // groups with rigid bodies of one set
   LostSpin lost_spin_;
   std::vector<HeldParticle<3>> held_;
+  std::vector<HeldPress> held_presses_;
   std::vector<AttachedBody<3>> attached_;  // bodies_ in the form that attachments use
   SolveStages stages_;
 };

@@ -63,7 +63,11 @@ void FlatAttachments::append_held(std::span<const ContactRigid> rigids, float st
   in_plane_.append_held(rigids_, step, held_);
   for (const HeldParticle<2>& column : held_)
     for (const std::uint32_t particle : {2 * column.particle, 2 * column.particle + 1})
-      held.push_back({column.body, particle, {column.velocity.x(), column.velocity.y(), 0}});
+      held.push_back({column.body,
+                      particle,
+                      {column.velocity.x(), column.velocity.y(), 0},
+                      column.most_impulse,
+                      column.attachment});
 }
 
 void FlatAttachments::begin(std::span<const AttachedBody<3>> bodies, std::span<ContactRigid> rigids,

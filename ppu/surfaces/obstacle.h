@@ -49,8 +49,8 @@ struct Obstacle {
   std::span<const std::array<Eigen::Vector3f, 3>> triangles = {};
   bool faces_bodies = false;  ///< of triangles: known to be wound so that their fronts are towards the bodies
   std::uint32_t part = 0;     ///< number within the rigid body: triangles of one part are wound alike
-  std::span<const ObstacleEdge> edges =
-      {};  ///< for triangles: three for each, in their order; none: their sides
+  /// For triangles: three for each, in their order; none: their sides.
+  std::span<const ObstacleEdge> edges = {};
 
   Eigen::Vector3f to_own(const Eigen::Vector3f& world) const {
     return rotation.transpose() * (world - position);

@@ -16,8 +16,8 @@ constexpr float kInside = 0.02f;   // distance of the tested places from an edge
 constexpr float kGoesOn = 0.25f;   // a face goes on if there is something this far beyond its edge
 constexpr float kLevel = 0.0025f;  // up to this height something is level with a face
 constexpr float kDeepest = 0.25f;  // the longest way out through another face
-constexpr float kPressedIn =
-    2;  // and through one that the body is in front of, or not farther behind than kDeepest
+// And through one that the body is in front of, or not farther behind than kDeepest.
+constexpr float kPressedIn = 2;
 
 /// Cosines and sines of an eighth and of a sixteenth of a turn.
 constexpr float kEighth = 0.70710678f, kCos = 0.92387953f, kSin = 0.38268343f;

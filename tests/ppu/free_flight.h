@@ -16,8 +16,8 @@ template <int kDimension>
 struct Momenta {
   using Vector = Eigen::Vector<double, kDimension>;
   Vector linear = Vector::Zero();  ///< kg m/s
-  turning::Axial<kDimension> angular =
-      turning::cross(linear, linear);  ///< kg m^2/s, about the centre of mass
+  /// kg m^2/s, about the centre of mass
+  turning::Axial<kDimension> angular = turning::cross(linear, linear);
 };
 
 template <int kDimension>

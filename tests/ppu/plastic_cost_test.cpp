@@ -34,8 +34,8 @@ double processor_time_us() {
 struct Stepped {
   SoftBody<3> body;
   std::unique_ptr<SoftBodySolver<3>> solver;
-  std::vector<double> cost_us =
-      {};  // of a step, a mean of four: plastic bodies are looked at in every fourth
+  // Of a step, a mean of four: plastic bodies are looked at in every fourth.
+  std::vector<double> cost_us = {};
 
   void step_four_times(std::span<const Vector3f> shape) {
     double sum = 0;
@@ -72,8 +72,8 @@ TEST(PlasticCost, OfABlockOfAThousandParticlesIsLittleMoreThanThatOfAnElasticOne
   for (const bool on_spes : {true, false}) {
     for (const float strain : {0.0f, 0.02f, 0.1f}) {
       const std::vector<Vector3f> shape = stretched(*model, strain);
-      std::array<Stepped, 2> both{
-          {{SoftBody<3>(model), nullptr}, {SoftBody<3>(model), nullptr}}};  // elastic, plastic
+      // Elastic, plastic.
+      std::array<Stepped, 2> both{{{SoftBody<3>(model), nullptr}, {SoftBody<3>(model), nullptr}}};
       for (Stepped& one : both) one.solver = on_spes ? spes.make_solver() : std::make_unique<PpuSolver<3>>();
       both[1].body.set_material(plastic);
       for (int i = 0; i < 60; ++i)

@@ -81,8 +81,8 @@ test::SkinnedMesh evaluate(const HungTorus& torus, const Vectors& corners, const
       f += corner * Eigen::RowVector3d(slope[0] * weight[1] * weight[2], weight[0] * slope[1] * weight[2],
                                        weight[0] * weight[1] * slope[2]);
     }
-    const Eigen::Vector3d normal =
-        f.determinant() * f.inverse().transpose() * vertex.normal.cast<double>();  // cof(F) N
+    // cof(F) N
+    const Eigen::Vector3d normal = f.determinant() * f.inverse().transpose() * vertex.normal.cast<double>();
     mesh.add_vertex((x - origin.cast<double>()).cast<float>(), normal.normalized().cast<float>());
   }
   return mesh;

@@ -133,11 +133,13 @@ class Controls {
   const Vector& gravity() const { return gravity_; }           ///< m/s^2
   const std::optional<Vector>& tilt() const { return tilt_; }  ///< radians; none: the scene's own
   const Hands<Dimension>& hands() const { return hands_; }
-  void forget_body(std::size_t body) { hands_.forget_body(body); }  ///< see Hands
+  /// @see Hands
+  void forget_body(std::size_t body) { hands_.forget_body(body); }
+  /// @see Hands
   template <class Follow>
   void follow_particles(const Follow& follow) {
     hands_.follow_particles(follow);
-  }  ///< see Hands
+  }
   bool paused() const { return paused_; }
 
  private:

@@ -102,8 +102,8 @@ struct KernelContext {
   std::uintptr_t landing_stack_top = 0;
   volatile std::sig_atomic_t in_kernel = 0;
   volatile std::sig_atomic_t interrupted = 0;
-  volatile std::sig_atomic_t landing =
-      0;  ///< the kernel has been left, and run_kernel() not yet come back to
+  /// The kernel has been left, and run_kernel() not yet come back to.
+  volatile std::sig_atomic_t landing = 0;
   volatile std::sig_atomic_t stepping = 0;  ///< the instruction that failed is being executed once more
   bool repeat_what_failed = true;           ///< false under a debugger, which steps through kernels itself
   Debugger* stepper = nullptr;              ///< is told of each instruction; null: nobody

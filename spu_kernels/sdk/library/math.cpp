@@ -426,8 +426,8 @@ struct Angle {
 
 /// |x| >= 2^20 and a float: the 24 bits of x times those 96 bits of 2 / pi that are neither above a turn nor below notice.
 Angle reduce_large(double x) {
-  const int exponent =
-      static_cast<int>(bits_of(x) >> 52 & 0x7FF) - 1023 - 23;  // of the last of 24 bits; -3..104
+  // Of the last of 24 bits; -3..104.
+  const int exponent = static_cast<int>(bits_of(x) >> 52 & 0x7FF) - 1023 - 23;
   const uint64_t m = static_cast<uint64_t>((bits_of(x) & 0xFFFFFFFFFFFFF) >> 29 | 1 << 23);
   // The product's bits from 4 on: they start `skipped` bits behind the point of 2 / pi.
   const int skipped = exponent > 2 ? exponent - 2 : 0;

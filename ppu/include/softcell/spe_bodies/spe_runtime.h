@@ -33,8 +33,8 @@ struct SpeRuntimeOptions {
   /// If set, the SPEs run by the timing model and count their cycles here; they take turns, and work only while the PPU side waits for
   /// them. With machine = kSpu the cycles are those of a PS3. Null: nothing is timed. It must outlive the runtime.
   ls_sim::Timing* timing = nullptr;
-  std::chrono::milliseconds deadline{
-      10'000};  ///< for one job, above 0; a job that takes longer is stopped and fails
+  /// For one job, above 0; a job that takes longer is stopped and fails.
+  std::chrono::milliseconds deadline{10'000};
   /// Size of main memory: whole megabytes (2^20 bytes), from 1 to 2816. The host provides memory only for the part in use.
   std::uint64_t main_memory_bytes = dma::kMainMemoryBytes;
 };
