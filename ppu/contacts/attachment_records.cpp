@@ -49,7 +49,7 @@ bool AttachmentRecords<kDimension>::write(bool once, AttachUnit& unit) const {
   link.rigid = spu::kAttachNoRigid;
   link.once = once;
   link.pushes = rows_.pushes_;
-  link.breaks = std::isfinite(rows_.settings_.break_force);
+  link.breaks = std::isfinite(rows_.settings_.break_force) && !rows_.carries_all();
   link.most_impulse = link.breaks != 0 ? rows_.settings_.break_force * rows_.step_ : 0;
   link.softness = rows_.softness_;
   link.most_push[0] = rows_.most_push(rows_.sides_.a);
@@ -161,6 +161,7 @@ void AttachmentRecords<kDimension>::read(const spu::AttachLink& link,
   for (std::size_t i = 0; i < rows.size(); ++i) rows_.rows_[i].impulse += Vector::Map(rows[i].impulse);
   rows_.state_.force = rows_.carried_impulse() / rows_.step_;
   rows_.broke_ = link.broke != 0;
+  if (rows_.carries_all()) rows_.keep_below_break_force();
 }
 
 template class AttachmentRecords<2>;

@@ -469,7 +469,7 @@ template <int kDimension>
 void AttachmentRows<kDimension>::append_held(std::uint32_t a, const AttachmentFrame<kDimension>& frame,
                                              const Rigid* rigid, float step,
                                              std::vector<HeldParticle<kDimension>>& held) {
-  breaks_off_ = false;
+  is_pressed_ = breaks_off_ = false;
   if (settings_.kind != AttachmentKind::kWeld || settings_.compliance > 0) return;
   if (rigid != nullptr && rigid->inverse_mass > 0) return;
   // Attachments that contradict each other hold nothing: in the last substep this one's ends were apart.
@@ -619,7 +619,7 @@ void AttachmentRows<kDimension>::keep_below_break_force() {
   if (!std::isfinite(settings_.break_force)) return;
   const float impulse = carried_impulse().norm(), most = settings_.break_force * step_;
   broke_ = impulse > most;
-  if (!broke_) return;
+  if (!broke_ || carries_all()) return;
   for (Row& row : rows_) {
     const Vector kept = most / impulse * row.impulse;
     apply(row, kept - row.impulse);

@@ -134,10 +134,15 @@ class AttachmentRows {
   void take_back_spin(bool is_alone);
   bool takes_back_spin() const;
 
-  /// Whether the impulse after the last iteration of the last substep exceeds the break force, or break_off() was called in it.
+  /// A rigid body presses on held particles as on a wall. An attachment that breaks as it carries more than expected carries all of it in
+  /// that substep, as the particles would fly away with the rest. Call it after append_held(), which begins a substep.
+  /// @param breaks  the attachment breaks at the substep's end, whatever it carries
+  void press(bool breaks) {
+    is_pressed_ = true;
+    breaks_off_ = breaks_off_ || breaks;
+  }
+  /// Whether the impulse after the last iteration of the last substep exceeds the break force, or press() said so.
   bool broke() const { return broke_ || breaks_off_; }
-  /// Lets the attachment break at the substep's end, whatever it carries. Call it after append_held(), which begins a substep.
-  void break_off() { breaks_off_ = true; }
   const AttachmentState<kDimension>& state() const { return state_; }
   /// @param a, b  positions of the bodies' particles  @param frame  used if b is empty
   AttachmentEnds<kDimension> ends(std::span<const Vector> a, std::span<const Vector> b,
@@ -217,6 +222,7 @@ class AttachmentRows {
   void solve_push(const Row& row);
   float solve_rope(Row& row);
   void keep_below_break_force();
+  bool carries_all() const { return is_pressed_ && !breaks_off_; }
   void limit_pushes(const Side& side, const AttachedBody<kDimension>& body) const;
   Vector carried_impulse() const;
   /// The particles of a patch, each once.
@@ -231,6 +237,7 @@ class AttachmentRows {
   float softness_ = 0;  // 1/kg: compliance of a row over the step squared
   bool pushes_ = false;
   bool broke_ = false;
+  bool is_pressed_ = false;
   bool breaks_off_ = false;
   bool is_direct_ = false;
   bool with_rigid_at_once_ = false;

@@ -43,8 +43,9 @@ class AttachmentSolver {
   /// Appends the particles that are held by frames that impulses do not move. Call it first in each substep.
   virtual void append_held(std::span<const Rigid> rigids, float step,
                            std::vector<HeldParticle<kDimension>>& held) = 0;
-  /// Lets an attachment break at the substep's end. @param attachment  HeldParticle::attachment
-  virtual void break_off(std::uint32_t attachment) = 0;
+  /// A rigid body presses on what an attachment holds. Call it before begin(). @param attachment  HeldParticle::attachment
+  /// @param breaks  more than it carries: it breaks at the substep's end
+  virtual void press(std::uint32_t attachment, bool breaks) = 0;
   /// @param bodies, rigids  must stay in place until finish()
   virtual void begin(std::span<const AttachedBody<kDimension>> bodies, std::span<Rigid> rigids,
                      float step) = 0;
@@ -79,7 +80,7 @@ class Attachments final : public AttachmentSolver<kDimension> {
   bool parts(std::uint32_t a, std::uint32_t b) const override;
   void append_held(std::span<const Rigid> rigids, float step,
                    std::vector<HeldParticle<kDimension>>& held) override;
-  void break_off(std::uint32_t attachment) override { all_[attachment].rows->break_off(); }
+  void press(std::uint32_t attachment, bool breaks) override { all_[attachment].rows->press(breaks); }
   void begin(std::span<const AttachedBody<kDimension>> bodies, std::span<Rigid> rigids, float step) override;
   void iterate(int iterations) override;
   void finish() override;

@@ -52,7 +52,8 @@ void solve_normal(SoftContact& contact, const ContactSides& sides, float step) {
   const float v = contact.normal.dot(relative_velocity(contact, sides));
   float least = contact.least_velocity;
   // Held particles do not give way to a push: the rigid body itself must come out, as its engine may press it in again in each substep.
-  if (contact.on_held) least = std::max(least, push_velocity(contact, sides.a->spacing(), step));
+  if (contact.on_held && sides.rigids[contact.rigid].inverse_mass > 0)
+    least = std::max(least, push_velocity(contact, sides.a->spacing(), step));
   const float wanted = contact.impulse + (least - v) / contact.normal_mobility;
   const float impulse = std::max(0.0f, wanted);
   apply(contact, sides, (impulse - contact.impulse) * contact.normal);
@@ -65,8 +66,13 @@ void solve_friction(SoftContact& contact, const ContactSides& sides) {
   const Vector3f sliding = v - contact.normal.dot(v) * contact.normal;
   const float speed = sliding.norm();
   const float most = contact.friction * contact.impulse;
+  if (most == 0 && contact.friction_impulse.isZero(0)) return;
   Vector3f wanted = contact.friction_impulse;
-  if (speed > 0) wanted -= sliding / mobility(contact, sides, sliding / speed);
+  if (speed > 0) {
+    const float along = mobility(contact, sides, sliding / speed);
+    // Neither of two moves that something holds.
+    wanted -= along > 0 ? Vector3f(sliding / along) : Vector3f(most / speed * sliding);
+  }
   const float length = wanted.norm();
   if (length > most) wanted *= most / length;
   apply(contact, sides, wanted - contact.friction_impulse);
@@ -107,11 +113,24 @@ void solve_push(SoftContact& contact, const ContactSides& sides, float step) {
   if (sides.b != nullptr) contact.b.add(sides.b->pushes, sides.b->inverse_masses, -change);
 }
 
+/// Whether a contact is left to what holds the particles. If the rigid body is static, or its supports or its engine hold it, too, the
+/// other particles have to give way, but not if they have too little of a share: an impulse between two that do not move has no limit.
+bool is_held_off(const SoftContact& contact, const ContactSides& sides) {
+  constexpr float kLeastOfRigid = 1.0f / 64;      // of a free body's mobility: a stack has less than one body
+  constexpr float kLeastOfParticles = 1.0f / 16;  // of their mobility without what holds
+  if (!contact.on_held) return false;
+  const ContactRigid& rigid = sides.rigids[contact.rigid];
+  const bool gives_way = rigid.mobility(contact.acts_at, contact.normal) > kLeastOfRigid * rigid.inverse_mass;
+  return !gives_way && contact.a.mobility(sides.a->inverse_masses_if_held) <
+                           kLeastOfParticles * contact.a.mobility(sides.a->inverse_masses);
+}
+
 }  // namespace
 
 void prepare(std::span<SoftContact> contacts, const ContactSides& sides) {
   for (SoftContact& contact : contacts) {
     contact.normal_mobility = mobility(contact, sides, contact.normal);
+    if (is_held_off(contact, sides)) contact.normal_mobility = std::numeric_limits<float>::infinity();
     contact.push_mobility = contact.a.mobility(sides.a->inverse_masses);
     if (sides.b != nullptr) contact.push_mobility += contact.b.mobility(sides.b->inverse_masses);
   }

@@ -32,7 +32,8 @@ struct SoftContact {
   float restitution = 0;  ///< of b if it is rigid
   /// Metres that body a may move on as a whole before something sharp crushes its cells (sharp_contacts.h); kNoLimit: nothing sharp.
   float room = kNoLimit;
-  bool on_held = false;       ///< with a moving rigid body, at held particles of body a
+  /// At held particles of body a, which rigid bodies press on: they feel what holds them.
+  bool on_held = false;
   bool holds_pushes = false;  ///< a body has pushes of its own; they must not lead into the other one
 
   // Results of the solver.

@@ -56,13 +56,6 @@ bool moves_freely_along(const ContactRigid& rigid, const Vector3f& direction) {
   return !rigid.held || direction.dot(rigid.held->linear * direction) > kNearlyAll * rigid.inverse_mass;
 }
 
-/// Whether a rigid body can give way to particles that are held. If its supports or its engine hold it, too, the particles have to: an
-/// impulse between two that do not move has no limit.
-bool gives_way(const ContactRigid& rigid, const SoftContact& contact) {
-  constexpr float kLeast = 1.0f / 64;  // of a free body's mobility: a stack has less than one body
-  return rigid.mobility(contact.acts_at, contact.normal) > kLeast * rigid.inverse_mass;
-}
-
 /// From a point to the anchor's place before the step.
 Vector3f arm_of(const auto& anchor, const ContactBody& body, const Vector3f& point) {
   return of_anchor(anchor, body, [&](std::size_t i) -> Vector3f { return body.positions[i] - point; });
@@ -323,50 +316,69 @@ void ContactSolver::find_supports(std::span<ContactRigid> rigids, const RigidLin
   supports_.hold(rigids, links, presses_, step);
 }
 
-/// Finds out which rigid bodies feel what holds the particles that they press on, and not the particles' own masses. An attachment that
-/// cannot stop one breaks: if it were felt, the particles would keep the impulse that it does not carry. Call it after find_supports().
+/// Finds out which groups feel what holds the particles that rigid bodies press on, and not the particles' own masses. An attachment that
+/// cannot stop them breaks: if it were felt, the particles would keep the impulse that it does not carry. Call it after find_supports().
 void ContactSolver::find_who_feels_what_holds(std::span<const ContactRigid> rigids) {
+  held_presses_.clear();
+  for (std::size_t i = pair_groups_; i < group_count_; ++i)
+    if (groups_[i].on_held) add_held_presses(groups_[i]);
   for (std::size_t i = pair_groups_; i < group_count_; ++i) {
     Group& group = groups_[i];
     if (!group.on_held) continue;
-    const ContactBody& body = bodies_[group.a];
+    group.on_held = !breaks_what_holds(group, rigids);
+    // All contacts with held particles see the same velocities, static ones, too. Otherwise each of two that press on a cell from both
+    // sides undoes what it believes that the other has done, and more.
     for (SoftContact& contact : group.contacts)
-      contact.on_held = contact.on_held && gives_way(rigids[contact.rigid], contact);
-    add_up_held_presses(group);
-    for (SoftContact& contact : group.contacts) {
-      if (!contact.on_held) continue;
-      const auto press = std::ranges::find(held_presses_, contact.rigid, &HeldPress::rigid);
-      const float impulse = press->impulse_to_stop(rigids[contact.rigid], body.velocity_if_held(contact.a));
-      contact.on_held = impulse <= body.most_impulse_if_held(contact.a);
-      if (!contact.on_held) break_off(group.a, contact.a, impulse);
-    }
+      contact.on_held = group.on_held && bodies_[group.a].holds(contact.a);
   }
 }
 
-/// Adds up the contacts of a group by the rigid bodies that press on held particles.
-void ContactSolver::add_up_held_presses(const Group& group) {
-  held_presses_.clear();
+/// Adds up the contacts with held particles by rigid bodies.
+void ContactSolver::add_held_presses(const Group& group) {
   for (const SoftContact& contact : group.contacts) {
     if (!contact.on_held) continue;
-    auto press = std::ranges::find(held_presses_, contact.rigid, &HeldPress::rigid);
-    if (press == held_presses_.end()) press = held_presses_.insert(press, {.rigid = contact.rigid});
-    press->points += contact.acts_at;
-    press->normals += contact.normal;
-    ++press->contacts;
+    HeldPress& press = held_press_of(contact.rigid);
+    press.points += contact.acts_at;
+    press.normals += contact.normal;
+    ++press.contacts;
   }
+}
+
+/// Whether rigid bodies press more on a soft one than some of the attachments carry that hold it. These will break.
+bool ContactSolver::breaks_what_holds(const Group& group, std::span<const ContactRigid> rigids) {
+  const ContactBody& body = bodies_[group.a];
+  for (HeldPress& press : held_presses_) press.contacts_of_body = 0;
+  for (const SoftContact& contact : group.contacts)
+    if (contact.on_held) ++held_press_of(contact.rigid).contacts_of_body;
+  bool breaks = false;
+  for (const SoftContact& contact : group.contacts) {
+    const float most = body.most_impulse_if_held(contact.a);
+    if (!contact.on_held || std::isinf(most)) continue;
+    const float impulse =
+        held_press_of(contact.rigid).impulse_to_stop(rigids[contact.rigid], body.velocity_if_held(contact.a));
+    breaks = breaks || impulse > most;
+    press_on_attachments(group.a, contact.a, impulse);
+  }
+  return breaks;
+}
+
+ContactSolver::HeldPress& ContactSolver::held_press_of(std::uint32_t rigid) {
+  const auto press = std::ranges::find(held_presses_, rigid, &HeldPress::rigid);
+  return press != held_presses_.end() ? *press : held_presses_.emplace_back(HeldPress{.rigid = rigid});
 }
 
 float ContactSolver::HeldPress::impulse_to_stop(const ContactRigid& by, const Vector3f& held_velocity) const {
   const Vector3f point = points / static_cast<float>(contacts), normal = normals.normalized();
   const float mobility = by.mobility(point, normal);
-  return mobility > 0 ? normal.dot(by.velocity_at(point) - held_velocity) / mobility : 0;
+  const float share = static_cast<float>(contacts_of_body) / static_cast<float>(contacts);
+  return mobility > 0 ? share * normal.dot(by.velocity_at(point) - held_velocity) / mobility : 0;
 }
 
-/// Breaks attachments that hold one of the anchor's particles and do not carry an impulse, kg m/s.
-void ContactSolver::break_off(std::uint32_t body, const Anchor& anchor, float impulse) {
+/// Tells the attachments that hold one of the anchor's particles. @param impulse  kg m/s
+void ContactSolver::press_on_attachments(std::uint32_t body, const Anchor& anchor, float impulse) {
   for (const HeldParticle<3>& held : held_)
-    if (held.body == body && held.most_impulse < impulse && anchor.share_of(held.particle) != 0)
-      attachments->break_off(held.attachment);
+    if (held.body == body && anchor.share_of(held.particle) != 0)
+      attachments->press(held.attachment, impulse > held.most_impulse);
 }
 
 void ContactSolver::release_supports() {
@@ -593,7 +605,8 @@ void ContactSolver::weigh_rigid_groups(std::span<const ContactRigid> rigids) {
       if (inverse_mass == 0) continue;
       group.heavy = group.heavy || inverse_mass * bodies_[group.a].model->mass() < 1;
       group.alternates =
-          group.alternates || (touched.by_several && kLight * inverse_mass * touched.lightest > 1);
+          group.alternates ||
+          (touched.by_several && (contact.on_held || kLight * inverse_mass * touched.lightest > 1));
     }
   }
 }

@@ -136,12 +136,13 @@ class ContactSolver {
       return by_worker ? solved.contacts[contact].impulse : contacts[contact].impulse;
     }
   };
-  /// A rigid body that presses on held particles of a soft one, at some points.
+  /// A rigid body that presses on held particles at some points.
   struct HeldPress {
     std::uint32_t rigid = 0;  ///< index
     int contacts = 0;
+    int contacts_of_body = 0;                           ///< how many of them with one soft body
     Eigen::Vector3f points{0, 0, 0}, normals{0, 0, 0};  ///< sums
-    /// kg m/s: with one impulse in the middle of the points.
+    /// kg m/s: that body's share of one impulse in the middle of the points.
     float impulse_to_stop(const ContactRigid& by, const Eigen::Vector3f& held_velocity) const;
   };
   using Pair = ContactOrder::Pair;
@@ -171,8 +172,10 @@ class ContactSolver {
   void find_supports(std::span<ContactRigid> rigids, const RigidLinks& links, float step);
   void release_supports();
   void find_who_feels_what_holds(std::span<const ContactRigid> rigids);
-  void add_up_held_presses(const Group& group);
-  void break_off(std::uint32_t body, const Anchor& anchor, float impulse);
+  HeldPress& held_press_of(std::uint32_t rigid);
+  void add_held_presses(const Group& group);
+  bool breaks_what_holds(const Group& group, std::span<const ContactRigid> rigids);
+  void press_on_attachments(std::uint32_t body, const Anchor& anchor, float impulse);
   void bounce(std::span<ContactRigid> rigids, float step);
   void remember_who_presses(std::span<const ContactRigid> rigids);
   void find_touched_cells();

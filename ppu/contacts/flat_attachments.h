@@ -23,7 +23,7 @@ class FlatAttachments final : public AttachmentSolver<3> {
   bool parts(std::uint32_t a, std::uint32_t b) const override { return in_plane_.parts(a, b); }
   void append_held(std::span<const ContactRigid> rigids, float step,
                    std::vector<HeldParticle<3>>& held) override;
-  void break_off(std::uint32_t attachment) override { in_plane_.break_off(attachment); }
+  void press(std::uint32_t attachment, bool breaks) override { in_plane_.press(attachment, breaks); }
   void begin(std::span<const AttachedBody<3>> bodies, std::span<ContactRigid> rigids, float step) override;
   void iterate(int iterations) override;
   void finish() override;

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -336,6 +337,52 @@ TEST(Box2dAttachmentsOfDrawnEdges, WhatIsWeldedAsAWholeCarriesARigidBody) {
 }
 
 /// In Box2D a dynamic body without mass neither falls nor is moved. It has no fixture, or one of density 0.
+double energy_of(const SoftBody<2>& body, const b2Body& box) {
+  double sum = 0.5 * double{box.GetMass()} * double{box.GetLinearVelocity().LengthSquared()} +
+               0.5 * double{box.GetInertia()} * std::pow(double{box.GetAngularVelocity()}, 2) +
+               9.81 * double{box.GetMass()} * double{box.GetPosition().y};
+  for (std::size_t i = 0; i < body.model().particles(); ++i)
+    sum += double{body.model().masses()[i]} *
+           (0.5 * double{body.velocities()[i].squaredNorm()} + 9.81 * double{body.position(i).y()});
+  return sum;
+}
+
+/// A heavy box falls on a few cells on the ground, of which some particles are welded to the world. Contacts that felt what holds these and
+/// contacts that did not undid each other's impulses, and more: in 274 of 1,000 such scenes energy came from nothing.
+TEST(Box2dAttachmentsOfDrawnEdges, GiveNoEnergyToWhatIsPressedBetweenABoxAndTheGround) {
+  std::mt19937 random(1);
+  const auto number = [&](float low, float high) {
+    return low + (high - low) * static_cast<float>(random() % 1000) / 1000;
+  };
+  for (int scene = 0; scene < 60; ++scene) {
+    SCOPED_TRACE(scene);
+    World2d w(9.81f, ContactMethod::kSurface);
+    w.add_box({0, -1}, {20, 1});
+    SoftBodySettings settings = firm();
+    settings.density = 50;
+    settings.alpha = number(0.05f, 1);
+    const int columns = 1 + static_cast<int>(random() % 4), rows = 1 + static_cast<int>(random() % 3);
+    SoftBody<2>& body = w.soft.add(rectangle_model({columns, rows}, settings), {0, 0.051f});
+    const auto part = random() % 4;  // all particles, the lower row, the left end, or any
+    const auto held = particles_where(body, [&](const Vector2f& p) {
+      return part == 0 || (part == 1 && p.y() < 0.06f) || (part == 2 && p.x() < 0.05f) ||
+             (part == 3 && random() % 2 == 0);
+    });
+    if (held.empty()) continue;
+    AttachmentSettings<2> weld;
+    if (random() % 2 == 0) weld.break_force = number(50, 3000);
+    w.soft.attach(body, Patch<2>::of_particles(held), weld);
+    const b2Vec2 half{number(0.05f, 0.3f), number(0.05f, 0.3f)};
+    const b2Body& box = *w.add_box({number(0, 0.1f) * static_cast<float>(columns), number(0.9f, 1.6f)}, half,
+                                   number(100, 1500));
+    const double before = energy_of(body, box);
+    for (int step = 0; step < 240; ++step) {
+      w.soft.step(kStepOf2d);
+      ASSERT_LT(energy_of(body, box), 1.05 * before) << step;
+    }
+  }
+}
+
 TEST_P(Box2dAttachments, HoldToADynamicBodyWithoutMass) {
   for (const bool with_fixture : {false, true}) {
     for (const AttachmentKind kind : {AttachmentKind::kWeld, AttachmentKind::kHinge, AttachmentKind::kRope}) {
