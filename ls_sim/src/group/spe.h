@@ -49,7 +49,7 @@ class Spe final : public dma::LocalStorePort, private dma::ReservationListener, 
   /// Who is told of stops that do not end a program; null: such a stop ends the run, too.
   void set_stop_listener(StopListener* listener) { channels_.set_stop_listener(listener); }
 
-  /// Sets which effective addresses mean something else to this SPE, while no run is in progress.
+  /// Sets the window through which this SPE reaches the threads of its own group, while no run is in progress.
   void set_window(dma::AddressWindow window) { mfc_.set_window(std::move(window)); }
 
   /// Sets the images of jobs. They outlive the SPE's runs.

@@ -47,7 +47,7 @@ class StoragePort {
     SC_ASSERT(local_store != nullptr, "an MFC without a local store");
   }
 
-  /// Sets the addresses that mean something else to this MFC; none until then.
+  /// Sets the window through which this SPE reaches the threads of its own group (AddressWindow); without this call it has none.
   void set_window(AddressWindow window) { window_ = std::move(window); }
 
   /// As AddressSpace::resolve().

@@ -105,8 +105,8 @@ class AccessObserver {
   virtual void on_host_access(dma::LocalStoreAddress, [[maybe_unused]] std::uint32_t bytes,
                               [[maybe_unused]] bool is_store) {}
 
-  /// The C library has given the program a block of its heap (`is_freed`: is about to take it back). Its bytes are those
-  /// that the program has asked for, and its instruction is the call.
+  /// The C library has allocated a block of its heap for the program or, with `is_freed`, is about to free one. `block.bytes` is the size
+  /// that the program asked for, `block.instruction` the call.
   virtual void on_heap_block([[maybe_unused]] const Access& block, [[maybe_unused]] bool is_freed) {}
 
   // Only for programs for the SPU:
