@@ -15,7 +15,7 @@
 namespace softcell::libspe2 {
 namespace {
 
-/// From the local store. [CBEA, problem state memory map] documented
+/// Offsets from the local store. [CBEA, problem state memory map] documented
 enum Register : std::uint32_t {
   kMsSync = 0x40000,
   kMfcLsa = 0x43004,

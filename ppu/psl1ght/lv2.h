@@ -83,7 +83,7 @@ struct SpuThread {
   std::optional<s32> exit_status;
   std::atomic<bool> ended{true};
   std::atomic<bool> has_stopped{false};  ///< since it was started
-  /// Of the last start; it is never replaced while the group runs.
+  /// The context of the last start; it is never replaced while the group runs.
   std::unique_ptr<ls_sim::SpeContext> context;
   std::jthread host;
 };
@@ -115,7 +115,7 @@ struct RawSpu {
   std::jthread host;
 };
 
-/// Of the process, never destroyed: threads may outlive main(). Any thread.
+/// The one object of the process, never destroyed: threads may outlive main(). Any thread.
 class Lv2 {
  public:
   static Lv2& get();

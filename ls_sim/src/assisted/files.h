@@ -46,7 +46,7 @@ class Files {
   bool replace_stream(std::uint32_t handle, std::FILE* opened);
 
  protected:
-  /// Of a StandardStream.
+  /// The stream of a StandardStream.
   virtual Stream standard_stream(std::uint32_t handle) = 0;
   virtual bool replace_standard_stream(std::uint32_t handle, const Stream& opened) = 0;
   void close_streams();

@@ -21,7 +21,7 @@ class MfcTimer {
   MfcTimer(int spe, ElementInterconnect& interconnect, PortUse& port, const TimingParameters& parameters)
       : spe_(spe), interconnect_(interconnect), port_(port), parameters_(parameters) {}
 
-  /// Of a command that waits for an acknowledgement.
+  /// The completion time of a command that waits for an acknowledgement.
   static constexpr std::uint64_t kNotYet = std::numeric_limits<std::uint64_t>::max();
 
   /// As Mfc::begin_job(): nothing is queued.

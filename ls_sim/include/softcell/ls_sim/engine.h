@@ -174,7 +174,7 @@ class Engine {
 struct NativeOptions {
   Debugger* debugger = nullptr;  ///< its on_instruction() is called before each instruction; may be null
   int spe = 0;                   ///< the SPE's number, for the debugger
-  /// Of main memory: faults of kernels that follow an effective address as a pointer say so for addresses in it.
+  /// The size of main memory: faults of kernels that follow an effective address as a pointer say so for addresses in it.
   std::uint64_t main_memory_bytes = dma::kMainMemoryBytes;
 };
 
