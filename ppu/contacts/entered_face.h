@@ -8,7 +8,7 @@
 
 namespace softcell::ppu {
 
-/// As way_out_of(), for a point of another body that may be deep inside. If a body is pressed flat, the nearest place of its surface at
+/// Finds the way out of a body, as way_out_of() does, for a point of another body that may be deep inside. If a body is pressed flat, the nearest place of its surface at
 /// rest is often at its rim, because above and below there is more at rest than there is now: two bodies on each other would be pushed
 /// sideways, and into each other. A point that is deep leaves through the face that the line towards the inside of the point's own body
 /// meets.

@@ -130,7 +130,7 @@ class Lv2 {
   u32 raw_room = 0;
   u32 last_number = 0;
 
-  /// With the lock.
+  /// Return the object with this number, with the lock; null: there is none.
   std::shared_ptr<Queue> queue(u32 number);
   std::shared_ptr<Group> group(u32 number);
 

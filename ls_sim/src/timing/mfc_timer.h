@@ -24,7 +24,7 @@ class MfcTimer {
   /// The completion time of a command that waits for an acknowledgement.
   static constexpr std::uint64_t kNotYet = std::numeric_limits<std::uint64_t>::max();
 
-  /// As Mfc::begin_job(): nothing is queued.
+  /// Begins a run, with nothing queued, as Mfc::begin_job() does.
   void begin_run();
 
   /// When there is room for another command. @param now  of the SPE
