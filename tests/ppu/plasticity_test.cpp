@@ -94,7 +94,7 @@ float angle_between_ends(const SoftBodyModel<kDimension>& model, Places<kDimensi
   return end(true) - end(false);
 }
 
-/// Of all cells, by their mean edges, in those of a cell at rest.
+/// The volumes of all cells, by their mean edges, in those of a cell at rest.
 struct Volumes {
   double sum = 0, least = std::numeric_limits<double>::max();
 };
