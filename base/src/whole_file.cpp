@@ -38,7 +38,7 @@ void remove_temporary_files_and_end(int signal) {
   ::raise(signal);  // handled by default again
 }
 
-/// Of the file's own name, which may be as long as names can be, it has the ending only: a program that is
+/// Returns a name that has only the ending of the file's own name, which may be as long as names can be: a program that is
 /// given the name may tell the format by it.
 std::string next_temporary_name(const fs::path& file) {
   static std::atomic<unsigned> counter{0};

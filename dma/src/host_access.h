@@ -21,7 +21,7 @@ struct Guard {
   Guard* outer = nullptr;
 };
 
-/// Of this thread; null: nothing is guarded.
+/// The guard of this thread; null: nothing is guarded.
 Guard*& current();
 
 /// Accepts these signals again, which the handler that was left had blocked.

@@ -28,7 +28,7 @@ class HostMemory {
   /// The part around `ea` within which all accesses are alike: of an allocation, or else of a mapping.
   std::optional<Mapping> mapping_at(EffectiveAddress ea, SpeAccess wanted) const;
 
-  /// As AddressSpace::resolve(). The range may reach over several mappings; of an allocation it stays within.
+  /// Does what AddressSpace::resolve() does. The range may reach over several mappings, but not out of an allocation.
   std::variant<std::byte*, Fault> resolve(EffectiveAddress ea, std::uint64_t bytes, SpeAccess wanted) const;
 
   /// Changes when an allocation ends.

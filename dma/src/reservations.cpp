@@ -172,7 +172,7 @@ struct Reservations::State {
 
   LocalStores* const local_stores;  // null: none
 
-  /// Of a host program's memory: the line as its holder's getllar has found it, and where.
+  /// A line of a host program's memory, as its holder's getllar has found it, and where.
   struct alignas(kQuadwordBytes) Seen {
     std::array<std::byte, kLineBytes> bytes;
     const std::byte* host = nullptr;

@@ -22,7 +22,7 @@ std::span<const std::uint32_t> strained_faces(const SoftBody<kDimension>& body, 
 std::vector<std::uint32_t> faces_across(const SoftBody<3>& body, const Cut& cut) {
   if (!cut.corner.allFinite() || !cut.along.allFinite() || !cut.across.allFinite() ||
       !(cut.along.cast<double>().cross(cut.across.cast<double>()).norm() > 0))
-    throw std::invalid_argument("a soft body is cut along a parallelogram that is not finite or has no area");
+    throw std::invalid_argument("a cut's plane or parallelogram is not finite or has no area");
   return faces_across(body.model().lattice(), body.model().cracks(), body.positions(), cut.corner, cut.along,
                       cut.across, !cut.has_end);
 }

@@ -313,11 +313,10 @@ void SoftBody<kDimension>::set_rest_positions(std::span<const Vector> rest) {
     if (!position.allFinite()) throw std::runtime_error("a soft body's rest shape is not finite");
   std::unique_ptr<RestShape> own = rest_of(rest);
   if (const std::size_t bad = own->flow->cells_that_contacts_hold())
-    throw std::runtime_error(
-        "of a soft body's rest shape " + base::counted(bad, "cell") + " of " +
-        std::to_string(model_->lattice().cells.size()) +
-        " are flat, turned inside out or of less than half of the model's volume, which contacts would push "
-        "back in each step");
+    throw std::runtime_error("in a soft body's rest shape " + base::counted(bad, "cell") + " of " +
+                             std::to_string(model_->lattice().cells.size()) + (bad == 1 ? " is" : " are") +
+                             " flat, inside out, or smaller than half of the cell in the model; contacts "
+                             "would push back such cells in each step");
   take_rest(std::move(own));
 }
 

@@ -165,7 +165,7 @@ struct SoftBodyModelMaker {
     if (settings.fracture) model->cracks();
     return model;
   }
-  /// With the same number of particles and cells nothing has come apart.
+  /// Whether nothing has come apart: the numbers of particles and cells are the same.
   template <int kDimension>
   static bool is_same(const SoftBodyModel<kDimension>& broken, const Lattice<kDimension>& lattice) {
     return lattice.particles.size() == broken.particles() &&

@@ -257,7 +257,7 @@ void Bounces::choose(std::span<const ContactBody> bodies, std::span<const Contac
   }
 }
 
-/// As contact_group.cpp does it for particles: an impulse along each normal, and friction by Coulomb's law.
+/// Gives each bounce an impulse along its normal, and friction by Coulomb's law, as contact_group.cpp does for particles.
 void Bounces::iterate() {
   const auto apply = [](const Bounce& bounce, const Vector3d& impulse) {
     bounce.a->push(bounce.point, impulse);

@@ -18,7 +18,7 @@ namespace softcell::ppu {
 
 inline constexpr float kLeastVolume = 0.5f;  ///< of the volume at rest: cells below it are crushed
 
-/// As a share of the volume at rest, at the substep's beginning; below 0 inside out.
+/// The volume of a cell at the substep's beginning, as a share of that at rest; below 0 inside out.
 float volume_of_cell(const ContactBody& body, std::uint32_t cell);
 
 /// Counts the crushed cells of a body between substeps.

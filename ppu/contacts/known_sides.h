@@ -36,7 +36,7 @@ class KnownSides {
     std::uint32_t nearest;
     int seen;  ///< as in side_of()
   };
-  /// As side_of(), of one sheet. If it has been unclear from the beginning, the answer is side_of() of the part.
+  /// Like side_of(), for one sheet of a part's triangles. If it has been unclear from the beginning, the answer is side_of() of the part.
   /// @param triangles  of the part, near the body   @param sheets  of these
   float side_of_sheet(std::uint32_t rigid, std::uint32_t part, std::span<const Triangle> triangles,
                       const TriangleSheets& sheets, const SheetSeen& sheet);
@@ -55,7 +55,7 @@ class KnownSides {
   /// The body is a piece that has just broken off. What the whole knew stays.
   /// @param origin  well inside of the whole, near the piece, metres in the world
   void begin_piece(const Eigen::Vector3f& origin);
-  /// Of a piece, in its first substep.
+  /// The origin that begin_piece() has set, in the piece's first substep.
   const std::optional<Eigen::Vector3f>& origin() const { return origin_; }
 
  private:

@@ -104,7 +104,8 @@ class ConvexContacts : private BodyAtObstacle {
     return turned_outwards(hit_at(arrival, way), way, cell);
   }
 
-  /// From a point across the surface into its body: of unit length, in the obstacle's frame. 0: the surface is not flat there.
+  /// The direction from a point across the surface into its body: of unit length, in the obstacle's frame. 0: the surface is not
+  /// flat there.
   Vector3f inwards_of(const TouchPoint& point) const {
     constexpr float kFar = 0.5f, kLeastDepth = 0.35f;  // cells
     const ContactModel& model = *body_.model;

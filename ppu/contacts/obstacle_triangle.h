@@ -107,8 +107,8 @@ class ObstacleTriangle {
   /// For triangles of a kilometre, or needles, floats give the nearest point only to a tenth of a millimetre, or worse.
   bool is_exact(float most) const { return face_.rounding < most * face_.area; }
 
-  /// Of a point outside of the drawn surface: it is as deep behind the triangle as `allowance` says, or deeper, and the line to it from the
-  /// inside of its body crosses the triangle. Where a body is pressed flat, its inside may be a little behind the triangle, too.
+  /// Tests a point outside of the drawn surface: it is as deep behind the triangle as `allowance` says, or deeper, and the line to it from
+  /// the inside of its body crosses the triangle. Where a body is pressed flat, its inside may be a little behind the triangle, too.
   std::optional<ObstacleHit> meet_outside(const PointWay& way, const Eigen::Vector3f& inside, float spacing,
                                           float front, float allowance) const {
     const float near = kNear * spacing;

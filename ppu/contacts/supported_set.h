@@ -32,7 +32,7 @@ class SupportedSet {
   /// @param rigids   all rigid bodies; must stay in place until give_support()
   /// @param members  the indices of those of the set; impulses move them
   void begin(std::span<ContactRigid> rigids, std::span<const std::uint32_t> members);
-  /// As LinkRows::add(). @param step  seconds
+  /// Adds a contact or joint to the links, as LinkRows::add() does. @param step  seconds
   void add(const RigidTouch& touch, float step) { links_.add(touch, step); }
   void add(const JointRow& joint) { links_.add(joint); }
   /// Finds which contacts and joints the presses on members load. Sets ContactRigid::held of the pressed members, and their velocities with

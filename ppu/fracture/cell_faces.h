@@ -26,7 +26,7 @@ template <int kDimension>
 struct LatticePiece {
   Lattice<kDimension> lattice;
   std::vector<std::uint32_t> cell_of;  ///< of each cell: its number in the whole
-  /// Of each particle: the particle of the whole that it is, or is a copy of.
+  /// For each particle, the particle of the whole that it is, or is a copy of.
   std::vector<std::uint32_t> particle_of;
 };
 

@@ -17,7 +17,7 @@ struct BreakableFaces {
   std::vector<std::uint32_t> cell_of_whole;  ///< of each cell: its number in the whole body
   std::vector<CellFace> faces;               ///< of the model's lattice
   std::vector<bool> is_broken;               ///< of each face
-  /// Of each face: its strength as a multiple of the limits in the settings. Infinite for faces that attach an empty cell, one that
+  /// For each face, its strength as a multiple of the limits in the settings. Infinite for faces that attach an empty cell, one that
   /// contains nothing of the body, to a neighbour: these never break.
   std::vector<float> strength;
 };

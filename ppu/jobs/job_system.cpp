@@ -59,8 +59,10 @@ Line change_line(dma::Reservations& reservations, dma::ReservationHolder& holder
 /// @throws std::invalid_argument  the image lies where its jobs would lie.
 const ls_sim::KernelImage& require_loop(const ls_sim::KernelImage& image) {
   if (image.begin == spu::kJobAreaBegin) {
-    throw std::invalid_argument("kernel " + image.name +
-                                " lies at the bottom of the local store, where jobs do: it is no job loop");
+    throw std::invalid_argument(
+        "kernel " + image.name +
+        " cannot be the job loop: it is linked to the bottom of the local store, where jobs "
+        "run; use softcell's kernel job_loop, or RESIDENT_AT");
   }
   return image;
 }
@@ -78,7 +80,8 @@ void require_job(const ls_sim::KernelImage& image, const ls_sim::KernelImage& lo
                                 " is a program of another kind: build a job with softcell_add_spu_kernel");
   }
   if (image.begin != spu::kJobAreaBegin) {
-    throw std::invalid_argument("kernel " + image.name + " stays resident itself: it is no job");
+    throw std::invalid_argument("kernel " + image.name +
+                                " cannot be a job: it is a resident kernel (RESIDENT_AT), which calls jobs");
   }
   if (image.program) {
     throw std::invalid_argument(
@@ -92,8 +95,9 @@ void require_job(const ls_sim::KernelImage& image, const ls_sim::KernelImage& lo
                                 " bytes of local store; the job loop leaves " + std::to_string(room));
   }
   if (wants_checked && !image.checked) {
-    throw std::invalid_argument("kernel " + image.name +
-                                " is not a checked image, so that nothing would be found");
+    throw std::invalid_argument(
+        "kernel " + image.name +
+        " is not a checked image, but SpeOptions::findings asks for one; load its checked image");
   }
 }
 
@@ -542,9 +546,8 @@ void JobChain::add(const Job& job) {
   SC_ASSERT(!state_->under_way, "add() while the chain's {} jobs are under way", size());
   SC_ASSERT(job.image.kernel_ != nullptr, "job {} has no image; JobSystem::load() returns one", size());
   if (state_->kernels.size() == state_->most_jobs) {
-    throw std::length_error("chain '" + state_->name + "' has room for " +
-                            base::counted(state_->most_jobs, "job") + " and has " +
-                            std::to_string(state_->most_jobs) + "; reserve() makes more room");
+    throw std::length_error("chain '" + state_->name + "' is full: it has room for " +
+                            base::counted(state_->most_jobs, "job") + "; reserve() makes more room");
   }
   const ls_sim::KernelImage& kernel = *job.image.kernel_;
   JobDescriptor descriptor{};

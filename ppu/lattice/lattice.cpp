@@ -20,7 +20,7 @@ namespace {
 template <int kDimension>
 using GridIndex = typename Lattice<kDimension>::GridIndex;
 
-/// By x, then y, then z.
+/// Orders places by x, then y, then z.
 constexpr auto kPrecedes = [](const auto& a, const auto& b) {
   return std::lexicographical_compare(a.data(), a.data() + a.size(), b.data(), b.data() + b.size());
 };

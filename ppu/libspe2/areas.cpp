@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kNoArea = -1;
 
-/// From the local store. [CBEA, problem state memory map; SPU thread mapping] documented
+/// The offset of an area from the local store. [CBEA, problem state memory map; SPU thread mapping] documented
 int offset_of(enum ps_area area) {
   switch (area) {
     case SPE_MSSYNC_AREA:

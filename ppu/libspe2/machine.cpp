@@ -167,7 +167,7 @@ void Machine::end_runs() {
   contexts_->wait([this] { return contexts_->none_runs_in_wait(); }, until);
 }
 
-/// Of contexts that the program has left to its end.
+/// Counts what was done by the contexts that the program has left to its end.
 void Machine::count_contexts() {
   Objects<spe_context>::all().for_each([this](spe_context& context) {
     if (context.spe == nullptr) return;

@@ -68,7 +68,7 @@ namespace softcell::libspe2 {
 template <class Object>
 class Objects {
  public:
-  /// Of the process; never destroyed.
+  /// All objects of the process; never destroyed.
   static Objects& all() {
     static auto* const objects = new Objects;
     return *objects;

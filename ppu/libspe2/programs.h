@@ -28,7 +28,7 @@ static_assert(sizeof(ProgramHandle) == 40, "as softcell_embed_spu_program writes
 std::shared_ptr<const ls_sim::KernelImage> program_in_memory(std::string_view name, const void* elf,
                                                              const void* checked_elf);
 
-/// Likewise of a file, from `offset` on; the checked image may lie in a file beside it.
+/// Loads the program in a file, from `offset` on; the checked image may lie in a file beside it.
 /// @return  null with errno set: it cannot be read.
 std::shared_ptr<const ls_sim::KernelImage> program_in_file(const std::string& path, std::uint64_t offset);
 

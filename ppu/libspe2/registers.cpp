@@ -15,7 +15,7 @@
 namespace softcell::libspe2 {
 namespace {
 
-/// From the local store. [CBEA, problem state memory map] documented
+/// Offsets from the local store. [CBEA, problem state memory map] documented
 enum Register : std::uint32_t {
   kMsSync = 0x40000,
   kMfcLsa = 0x43004,
@@ -37,7 +37,7 @@ enum Register : std::uint32_t {
 constexpr std::uint32_t kQueueEmpty = 0x8000'0000, kRunning = 1;
 constexpr int kProxySlots = 8;
 
-/// Of one context; the last values that were written. Guarded by its mutex.
+/// Stores the value that was written to a register of one context. Guarded by its mutex.
 void store(spe_context& context, std::uint32_t offset, std::uint32_t value) {
   auto& registers = context.registers;
   switch (offset) {

@@ -40,7 +40,7 @@ void check_extensions(const GltfValue& root) {
   }
 }
 
-/// From a node's frame to its parent's.
+/// The transform from a node's frame to its parent's.
 Eigen::Affine3d transform_of(const GltfValue& node) {
   Eigen::Affine3d transform = Eigen::Affine3d::Identity();
   std::array<double, 16> matrix{};

@@ -10,7 +10,7 @@
 
 namespace softcell::ppu {
 
-/// By name. Of textures the names of their files are known.
+/// Materials by name. Their textures have file names and no pictures.
 using MaterialLibrary = std::map<std::string, MeshMaterial, std::less<>>;
 
 /// Statements other than newmtl, Kd, map_Kd, d, Tr, Pr, Pm and norm are skipped.

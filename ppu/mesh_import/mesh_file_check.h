@@ -20,7 +20,7 @@ inline constexpr std::size_t kMaxMeshTriangles = 4'000'000;
 inline constexpr std::size_t kMaxPolygonCorners = 255;
 /// Each part has names of its own, which a file of a few bytes a part could make fill the memory.
 inline constexpr std::size_t kMaxMeshParts = 65'536;
-/// Of an object, a material or a texture file; longer ones are cut.
+/// The longest name of an object, a material or a texture file; longer ones are cut.
 inline constexpr std::size_t kMaxMeshNameBytes = 255;
 
 /// Consecutive triangles of a file that belong to one object and have one material.

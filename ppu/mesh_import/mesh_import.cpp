@@ -36,7 +36,7 @@ namespace {
 constexpr std::uint64_t kMaxFileBytes = std::uint64_t{1} << 30;
 constexpr std::uint64_t kMaxMaterialLibraryBytes = std::uint64_t{16} << 20;
 
-/// Of the formats that the library reads.
+/// The file extension of a format that the library reads.
 const char* extension_of(MeshFormat format) {
   switch (format) {
     case MeshFormat::kGltf:

@@ -12,7 +12,7 @@ namespace softcell::ppu {
 /// shapes, somewhat larger bodies fit.
 inline constexpr std::size_t kParticlesThatFit2d = 36 * 36;
 
-/// As MatchPlan, with two levels of sums: from particles to bars along y, from bars to regions along x.
+/// The plan of a body in two dimensions, which has two levels of sums: from particles to bars along y, from bars to regions along x.
 class MatchPlan2d : public KernelPlan<spu::MatchPlanHeader2d> {
  public:
   /// @throws BodyTooLarge  plan and state of the bodies under way need more local store than the kernel has; the message states both sizes.

@@ -83,7 +83,7 @@ struct SpuThread {
   std::optional<s32> exit_status;
   std::atomic<bool> ended{true};
   std::atomic<bool> has_stopped{false};  ///< since it was started
-  /// Of the last start; it is never replaced while the group runs.
+  /// The context of the last start; it is never replaced while the group runs.
   std::unique_ptr<ls_sim::SpeContext> context;
   std::jthread host;
 };
@@ -115,7 +115,7 @@ struct RawSpu {
   std::jthread host;
 };
 
-/// Of the process, never destroyed: threads may outlive main(). Any thread.
+/// The one object of the process, never destroyed: threads may outlive main(). Any thread.
 class Lv2 {
  public:
   static Lv2& get();
@@ -130,7 +130,7 @@ class Lv2 {
   u32 raw_room = 0;
   u32 last_number = 0;
 
-  /// With the lock.
+  /// Return the object with this number, with the lock; null: there is none.
   std::shared_ptr<Queue> queue(u32 number);
   std::shared_ptr<Group> group(u32 number);
 

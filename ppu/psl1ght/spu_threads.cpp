@@ -27,7 +27,7 @@ s32 with_thread(u32 number, Work&& work) {
   });
 }
 
-/// Likewise of one whose group runs.
+/// Does the same with a thread whose group runs.
 template <class Work>
 s32 with_running_thread(u32 number, Work&& work) {
   return with_thread(number, [&](Group& group, SpuThread& thread) -> std::uint32_t {

@@ -79,8 +79,8 @@ class ShapeMatcher {
 
   const MatchingPlan<Real, kDimension>& plan() const { return *plan_; }
 
-  /// From the next step on with the constants of another rest shape. Rotations stay.
-  /// @pre of as many particles and regions
+  /// Uses the constants of another rest shape from the next step on; rotations stay.
+  /// @pre the plan has as many particles and regions as the present one
   void set_plan(std::shared_ptr<const MatchingPlan<Real, kDimension>> plan);
 
  private:

@@ -13,7 +13,7 @@
 
 namespace softcell::ppu {
 
-/// Of |cof(F) N|^2 in m^4: below it the cell is flat and says nothing about the normal. The kernel `skin` has
+/// The least |cof(F) N|^2 in m^4: below it the cell is flat and says nothing about the normal. The kernel `skin` has
 /// no bound: it adds kFlat N (skin/cell.h).
 inline constexpr double kSmallestNormalSquared = 1e-20;
 

@@ -26,7 +26,7 @@ class CandidatePairs {
     std::uint32_t slot = 0;  ///< place of the pair's candidates; no other pair has it
     float margin = 0;        ///< metres: to find candidates with, or found with; 0: not worth keeping them
     std::uint32_t count = spu::kFindUnknown;  ///< of candidates, if known
-    /// By how far the second body had moved against the first when they were found.
+    /// How far the second body had moved against the first when they were found.
     Eigen::Vector3d apart{0, 0, 0};
     double spread = 0;       ///< the sum of both lengths at that time
     bool overflows = false;  ///< the kernel once had no room for all that it found

@@ -181,7 +181,7 @@ void SpeSolver<kDimension>::find_place(Group& group, Known& known) {
     group.bodies = std::make_shared<MatchBodies<kDimension>>(memory_, *plans->whole, group.members.size());
 }
 
-/// As a whole if it fits, else in tiles, else by the PPU.
+/// Chooses how a model is stepped: as a whole if it fits, else in tiles, else by the PPU.
 template <int kDimension>
 auto SpeSolver<kDimension>::plans_of(const std::shared_ptr<const SoftBodyModel<kDimension>>& model) const
     -> Plans {

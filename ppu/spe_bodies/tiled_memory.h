@@ -39,7 +39,7 @@ class TiledMemory {
 
   std::size_t tiles() const { return reports_.size(); }
 
-  /// By place, see TilePlan::place_of(). Do not change the places between.
+  /// Positions and velocities by place, see TilePlan::place_of(). Do not change the places between.
   std::span<Vector> positions() { return positions_.span(); }    ///< metres; a step does not change them
   std::span<Vector> velocities() { return velocities_.span(); }  ///< m/s
   dma::EffectiveAddress positions_ea() const { return positions_.ea(); }

@@ -47,7 +47,7 @@ class FlatLayer {
   std::span<const float> masses() const { return masses_; }
   std::span<const MarginCell> margin_cells() const { return margin_cells_; }  ///< of each cell
   std::size_t own_cells() const;  ///< how many of the cells are the body's: the first ones
-  /// As crack_sides(); 0 for margin cells.
+  /// What crack_sides() returns for each cell; 0 for margin cells.
   std::span<const std::uint32_t> crack_sides() const { return crack_sides_; }
 
   /// Copies places or velocities in the plane to all particles of the layer; places get z = -half and z = +half.

@@ -29,7 +29,7 @@ struct JointRow {
   std::uint32_t a = 0, b = kWorld;  ///< indices of their ContactRigid, or kWorld; at least one moves
   Share of_a = {}, of_b = {};
   float target = 0;  ///< the sum of both shares that the joint aims at, m/s or rad/s
-  /// By how much the sum misses the target for an impulse of 1, as with a spring: 1/kg, or 1/(kg m^2).
+  /// How much the sum misses the target for an impulse of 1, as with a spring: 1/kg, or 1/(kg m^2).
   float softness = 0;
   /// Limits of the row's impulse in a substep, for a joint that has a stop or a motor.
   float least = -kNoLimit, most = kNoLimit;

@@ -17,7 +17,8 @@ using Eigen::Vector4f;
 // In cells. Points of a body may be somewhat farther apart than PointChooser wants them, as not every place can have one.
 constexpr float kApart = 0.7f;
 constexpr float kBulge = 0.06f;
-/// As a multiple of a radius, rounded: between two points a radius bulges by kApart^2 / (8 radius).
+/// The largest cells for which an edge is round, as a multiple of a radius, rounded: between two points a radius bulges by
+/// kApart^2 / (8 radius).
 constexpr float kCellsOfRadius = 1;
 
 /// The largest cells for which the hull, half of kApart to either side of a place of an edge, lies no more than kBulge lower than there.

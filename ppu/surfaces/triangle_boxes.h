@@ -40,12 +40,12 @@ class TriangleBoxes {
     }
   }
 
-  /// Around one triangle.
+  /// The box around one triangle.
   Bounds<3> at(std::size_t triangle) const {
     return fours_[triangle / 4].at(static_cast<Eigen::Index>(triangle % 4));
   }
 
-  /// Around all triangles. @pre there are some
+  /// The box around all triangles. @pre there are some
   const Bounds<3>& bounds() const { return bounds_; }
 
  private:

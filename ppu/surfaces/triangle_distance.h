@@ -56,7 +56,7 @@ class TriangleGrid {
   void look_at_cube(const Eigen::Vector3i& cube, const Eigen::Vector3f& point, Nearest& nearest) const;
   Eigen::Vector3i cube_of(const Eigen::Vector3f& point) const;
 
-  /// Around a triangle. Most triangles need no closer look: their spheres are farther away than the nearest triangle.
+  /// A sphere around a triangle. Most triangles need no closer look: their spheres are farther away than the nearest triangle.
   struct Sphere {
     float x, y, z, radius;
   };

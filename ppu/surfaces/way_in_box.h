@@ -8,7 +8,7 @@
 
 namespace softcell::ppu {
 
-/// From `first` to `last`, as fractions of the segment, 0..1. If `first` is larger, no part is in the box.
+/// The part of a segment in a box, from `first` to `last`, as fractions of the segment, 0..1. If `first` is larger, no part is in the box.
 struct WayInBox {
   float first = 0, last = 1;
 };

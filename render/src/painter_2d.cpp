@@ -40,7 +40,8 @@ std::uint32_t rgba8(const Colour& linear, float opacity) {
          byte(std::clamp(opacity, 0.0f, 1.0f)) << 24;
 }
 
-/// Of a curve that falls to 0 at `reach` texels, in one number for both sides; together they are 1. Biweight: no libm.
+/// Computes the weights of a curve that falls to 0 at `reach` texels, one number for both sides; together they are 1. Biweight: no
+/// libm.
 int blur_weights(float reach, std::array<float, kMaxTaps + 1>& weights) {
   const int taps = std::clamp(static_cast<int>(reach), 0, kMaxTaps);
   float sum = 0;

@@ -120,7 +120,7 @@ bool encode(const Encoding& encoding, std::FILE* stream, Message& message) {
   return true;
 }
 
-/// As encode(). What it appends to `texts` belongs to the caller.
+/// Appends a picture's texts. Errors of libpng jump over it, as over encode(): `texts` belongs to the caller.
 bool collect_texts(std::FILE* stream, std::vector<PngText>& texts, Message& message) {
   png_structp png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &message, on_error, on_warning);
   if (png == nullptr) return false;

@@ -25,7 +25,7 @@ class PostProcess {
   PostProcess(const PostProcess&) = delete;
   PostProcess& operator=(const PostProcess&) = delete;
 
-  /// To draw into: a colour and a depth for each sample.
+  /// The framebuffer to draw into: a colour and a depth for each sample.
   GLuint drawn() const;
   /// The finished picture, one sample a pixel.
   GLuint picture() const;

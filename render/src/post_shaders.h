@@ -24,7 +24,7 @@ vec4 drawn(sampler2DMS from, ivec2 at) {
 }
 )glsl";
 
-/// From the depth buffer to metres along the line of sight, one texel for `pixels` by `pixels` pixels, and 1 where there is an edge.
+/// Converts the depth buffer to metres along the line of sight, one texel for `pixels` by `pixels` pixels, and 1 where there is an edge.
 inline constexpr char kDistanceFragment[] = R"glsl(
 uniform DRAWN depth;
 uniform int pixels;

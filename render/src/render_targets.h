@@ -36,7 +36,7 @@ class RenderTargets {
   int height() const { return settings_.height; }
   int shadow_map_size() const { return settings_.shadow_map_size; }
   int samples() const { return settings_.samples; }
-  /// As Renderer::description().
+  /// What Renderer::description() returns.
   const std::string& description() const { return description_; }
   int largest_side() const { return largest_side_; }  ///< of a picture or texture, pixels
 

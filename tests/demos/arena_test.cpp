@@ -39,7 +39,7 @@ struct WorstVertex {
   double normal_radians = 0;
 };
 
-/// Of what is drawn in the shown frame.
+/// The box around what is drawn in the shown frame.
 Eigen::AlignedBox3f box_of(const ppu::SkinnedBody& body) {
   Eigen::AlignedBox3f box;
   for (const spu::SkinnedVertex& vertex : body.vertices) {

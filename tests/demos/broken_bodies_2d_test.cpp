@@ -72,7 +72,7 @@ TEST(BrokenBodies2d, HaveTheSameBitsForAnyNumberOfSpesAndSchedule) {
   EXPECT_EQ(hashes.size(), 1u);
 }
 
-/// By way of the text of a recording, with hands that hold what is cut.
+/// The recording goes through its text; hands hold what is cut.
 TEST(BrokenBodies2d, CutsAndHandsAreReplayedToTheSameBits) {
   const Scene2d scene = load_scene_2d("man");
   Recording<2> recording{.scene = "man", .frames = 60};

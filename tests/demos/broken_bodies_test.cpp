@@ -190,7 +190,7 @@ TEST(TheUsersKnife, CutsNothingWithoutAnAreaOrWhereBodiesTouchWithSpheres) {
   EXPECT_EQ(spheres.soft_bodies(), 1u);
 }
 
-/// By way of the text of a recording.
+/// The recording goes through its text.
 TEST(TheUsersKnife, IsReplayedToTheSameBitsOnAnyNumberOfSpes) {
   const Scene scene = load_scene_3d("drop");
   Recording<3> recording{.scene = "drop", .frames = 60};

@@ -101,7 +101,7 @@ TEST(LiveSettings, AResetIsTheBeginningInAllBits) {
   EXPECT_EQ(simulation.state_hash(), hash);
 }
 
-/// By how much longer along x the rest shape of a body is after two hands have pulled it apart for a second, metres.
+/// How much longer along x the rest shape of a body is after two hands have pulled it apart for a second, metres.
 float longer_after_a_pull(float yield) {
   Scene scene = load_scene_3d("drop");
   scene.gravity = 0;

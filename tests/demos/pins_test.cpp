@@ -156,7 +156,7 @@ TYPED_TEST(Pin, TakesThePlaceOfTheOldestWhereThereAreMany) {
   EXPECT_LT((this->place_of(held) - before).norm(), 0.02f);
 }
 
-/// By way of the text of its state.
+/// The moment goes through the text of its state.
 TYPED_TEST(Pin, HoldsInTheSceneThatASavedMomentBegins) {
   constexpr int kOf = TestFixture::kDimension;
   this->pin_top();
@@ -187,7 +187,7 @@ TYPED_TEST(Pin, HoldsInTheSceneThatASavedMomentBegins) {
   EXPECT_TRUE(again.moment().pins.empty());
 }
 
-/// By way of the text of a recording.
+/// The recording goes through its text.
 TYPED_TEST(Pin, IsReplayedToTheSameBitsOnAnyNumberOfSpes) {
   constexpr int kOf = TestFixture::kDimension;
   Vector<kOf> aside = this->top();

@@ -28,7 +28,7 @@
 namespace softcell::demos {
 namespace {
 
-/// Of this process and of those that ran its scripts: what others do on the machine says nothing of a test.
+/// The processor time of this process and of those that ran its scripts: what others do on the machine says nothing of a test.
 double processor_seconds() {
   double seconds = 0;
   for (const int who : {RUSAGE_SELF, RUSAGE_CHILDREN}) {

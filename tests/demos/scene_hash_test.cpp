@@ -28,7 +28,7 @@ constexpr const char* kHowToRenew =
     "If the change of bits is intended, write tests/demos/scene_hashes.txt anew with "
     "SOFTCELL_UPDATE_HASHES=1 build/release/scene_hash_tests, and say in the commit why.";
 
-/// Of frames of 1/60 s. Few of the scene that is large.
+/// The number of frames of 1/60 s that a scene runs; few for the one that is large.
 int frames_of(const SceneListing& scene) { return scene.name == "big" ? 5 : 60; }
 
 std::uint64_t hash_after(const SceneListing& listing, int frames, const SimulationOptions& options = {}) {

@@ -17,7 +17,7 @@ void step(Simulation& simulation, int frames) {
   for (int frame = 0; frame < frames; ++frame) simulation.step();
 }
 
-/// Of all soft bodies, as they are now.
+/// The present settings of all soft bodies.
 template <class Simulation>
 std::vector<ppu::SoftBodySettings> settings_of(const Simulation& simulation) {
   std::vector<ppu::SoftBodySettings> all;

@@ -27,7 +27,7 @@ constexpr int kFramesASecond = 60;
 // A sanitizer keeps freed memory for a while, so that there is nothing to be learnt from its amount.
 constexpr bool kMemoryIsMeasured = SC_ADDRESS_SANITIZER == 0 && SC_THREAD_SANITIZER == 0;
 
-/// Of this process, resident, in megabytes.
+/// The resident memory of this process, megabytes.
 double memory_in_use() {
   std::ifstream file("/proc/self/statm");
   double program = 0, resident = 0;
@@ -52,7 +52,7 @@ int wanted_seconds() {
 /// Where the walls end. They are 0.9 m high: a body may lean over one, but its middle stays inside.
 bool between_walls(const Eigen::Vector3f& x) { return std::max(std::abs(x.x()), std::abs(x.z())) < 4.8f; }
 
-/// Of what is drawn. By hand: a SurfaceQuery builds a tree, for thousands of frames.
+/// The box around what is drawn, computed here: a SurfaceQuery builds a tree, for thousands of frames.
 Eigen::AlignedBox3f drawn_bounds(const ppu::SoftBody<3>& body) {
   std::vector<Eigen::Vector3f> positions(body.model().mesh().positions.size()), normals(positions.size());
   EXPECT_FALSE(positions.empty());
@@ -123,7 +123,7 @@ TEST(Soak, NothingIsLostInALongTime) {
   EXPECT_LT(memory.back(), third + 2) << "MB; after a third of the time it was " << third;
 }
 
-/// As the report says: with a gravity of 300 m/s^2 soft bodies go on as always, as long as they cannot gain
+/// The report says so: with a gravity of 300 m/s^2 soft bodies go on as always, as long as they cannot gain
 /// speed by a fall.
 TEST(Soak, AGravityOf300Holds) {
   if (kSlowBuild) GTEST_SKIP() << "too slow with sanitizers, which run some seconds of the arena";

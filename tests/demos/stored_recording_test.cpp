@@ -68,10 +68,10 @@ void expect_recorded_end(const std::string& name) {
   }
 }
 
-/// Of 3D: bodies that are held, stay bent, break and are cut; and those that show contacts.
+/// Scenes in 3D: bodies that are held, stay bent, break and are cut; and those that show contacts.
 const std::vector<std::string> kScenes3d{"break", "bridge", "car_crash",  "cut",   "gap",  "hang",
                                          "knot",  "pile",   "torus_fold", "touch", "tyres"};
-/// Of 2D: who loses an arm.
+/// The scene in 2D: a man who loses an arm.
 const std::vector<std::string> kScenes2d{"man_breaks"};
 
 const auto name_of = [](const auto& scene) { return scene.param; };

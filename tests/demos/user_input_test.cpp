@@ -610,7 +610,7 @@ TEST(UserInput3d, TheMouseKnowsTheWindowsSize) {
   ASSERT_EQ(input.next_frame().size(), 1u);
 }
 
-/// Of a controller: axis and share of its way.
+/// The event of a controller's axis at this share of its way.
 SDL_Event axis_at(SDL_GameControllerAxis axis, float share) {
   SDL_Event event{};
   event.caxis.type = SDL_CONTROLLERAXISMOTION;

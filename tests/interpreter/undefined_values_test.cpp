@@ -128,7 +128,7 @@ TEST(UndefinedValues, EndWithATransferFromMainStorage) {
   EXPECT_TRUE(findings.empty()) << findings.list().front().fault.message();
 }
 
-/// Of each instruction that computes: other values in the undefined bits of its operands change no other bits of the result
+/// For each instruction that computes, other values in the undefined bits of its operands change no other bits of the result
 /// than those that are followed. Few bits may be missed, none may be followed for nothing.
 TEST(UndefinedValues, AreWhatTheResultDependsOn) {
   std::mt19937_64 random(7);

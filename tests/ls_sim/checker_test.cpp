@@ -233,7 +233,7 @@ TEST_F(CheckerTest, ALoadIsFreeAsSoonAsTheStatusIsThere) {
   EXPECT_EQ(rules(), std::vector<std::string>{"load-in-flight"}) << "of the other tag";
 }
 
-/// Of several tags any one may be complete.
+/// Any one of several tags may be complete.
 TEST_F(CheckerTest, AStatusThatIsThereDoesNotSayWhichOfSeveralTagsIsComplete) {
   issue(MfcOpcode::get, buffer_, kEa, 64, 3);
   issue(MfcOpcode::get, buffer_ + 64, kEa, 64, 4);

@@ -154,7 +154,7 @@ TEST(BulletSoftBodies, CarryARigidBox) {
   EXPECT_LT(fastest(body), 0.03f);
 }
 
-/// From then on the body has the spheres of the other model.
+/// After the assignment the body has the spheres of the other model.
 TEST(BulletSoftBodies, ABodyOfALargerOrSmallerModelCanBeAssigned) {
   const auto small = block_model({2, 2, 2}, stiff(0.1f)), large = block_model({6, 4, 6}, stiff(0.1f));
   for (const auto& [before, after] : {std::pair(small, large), std::pair(large, small)}) {
@@ -368,7 +368,7 @@ TEST(BulletSoftBodies, ActOncePerSubstepAndCallWhatWasThere) {
 std::optional<BulletSoftBodies>* g_destroyed_in_tick = nullptr;
 void destroy_soft_bodies(btDynamicsWorld*, btScalar) { g_destroyed_in_tick->reset(); }
 
-/// As a program may that loads its next level there.
+/// A program may load its next level there.
 TEST(BulletSoftBodies, MayBeDestroyedInTheProgramsOwnTick) {
   BulletWorld bullet;
   bullet.world().setInternalTickCallback(&destroy_soft_bodies, nullptr, true);

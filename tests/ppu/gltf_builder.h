@@ -67,7 +67,7 @@ class GltfBuilder {
     return "glTF" + word(2) + word(28 + json.size() + bytes.size()) + word(json.size()) + "JSON" + json +
            word(bytes.size()) + std::string("BIN\0", 4) + bytes;
   }
-  /// With its bytes in a file of that name.
+  /// A document whose bytes are in a file of that name.
   std::string gltf_beside(const std::string& file, const std::string& rest) const {
     return document(rest, R"(,"uri":")" + file + "\"");
   }

@@ -222,7 +222,7 @@ TEST_F(JobSystemTest, AChainGetsMoreRoomAndKeepsItsJobs) {
     chain.add({adds, lines.ea(2)});
     ADD_FAILURE() << "a chain has more jobs than room";
   } catch (const std::length_error& error) {
-    EXPECT_STREQ(error.what(), "chain 'grows' has room for 2 jobs and has 2; reserve() makes more room");
+    EXPECT_STREQ(error.what(), "chain 'grows' is full: it has room for 2 jobs; reserve() makes more room");
   }
   chain.kick();
   chain.reserve(200);

@@ -26,7 +26,7 @@ struct Kept {
 
 class KnownModelsTest : public testing::Test {
  protected:
-  /// As a body would hold it.
+  /// Holds the model as a body would.
   std::shared_ptr<const Kept> use(const Model& model) {
     auto& kept = models_[model.get()];
     if (!kept) kept = std::make_shared<Kept>(model);

@@ -40,7 +40,7 @@ struct Cloud {
     for (int d = 0; d < kDimension; ++d) v[d] = size * number();
     return v;
   }
-  /// Of `after` less `before`.
+  /// The momenta of `after` less those of `before`.
   test::Momenta<kDimension> change() const {
     test::Momenta<kDimension> sums;
     for (std::size_t i = 0; i < positions.size(); ++i) {

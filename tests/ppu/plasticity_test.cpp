@@ -94,7 +94,7 @@ float angle_between_ends(const SoftBodyModel<kDimension>& model, Places<kDimensi
   return end(true) - end(false);
 }
 
-/// Of all cells, by their mean edges, in those of a cell at rest.
+/// The volumes of all cells, by their mean edges, in those of a cell at rest.
 struct Volumes {
   double sum = 0, least = std::numeric_limits<double>::max();
 };
@@ -467,9 +467,9 @@ TEST(Plasticity, RefusesRestShapesThatAreFlatOrMirrored) {
   const std::uint64_t before = state_hash(body);
   for (const float share : {0.3f, 0.0f, -1.0f}) {
     const std::string cells = std::to_string(body.model().lattice().cells.size());
-    EXPECT_EQ(sentence(share), "of a soft body's rest shape " + cells + " cells of " + cells +
-                                   " are flat, turned inside out or of less than half of the model's volume, "
-                                   "which contacts would push back in each step");
+    EXPECT_EQ(sentence(share), "in a soft body's rest shape " + cells + " cells of " + cells +
+                                   " are flat, inside out, or smaller than half of the cell in the model; "
+                                   "contacts would push back such cells in each step");
   }
   EXPECT_EQ(state_hash(body), before);
   EXPECT_EQ(sentence(0.5f), "");

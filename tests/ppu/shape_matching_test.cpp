@@ -73,7 +73,7 @@ class Body {
     for (const Vector3d& v : x) result.push_back(v.cast<Real>());
     return result;
   }
-  /// As the solver sees them: rounded.
+  /// Positions as the solver sees them, rounded.
   static std::vector<Vector3d> rounded(const std::vector<Vector3d>& x) { return widen(narrow(x)); }
   static std::vector<Vector3d> widen(const std::vector<Vector>& x) {
     std::vector<Vector3d> result;

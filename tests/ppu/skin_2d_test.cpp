@@ -47,7 +47,7 @@ float area_of_outlines(const Skin2d& skin) {
   return area;
 }
 
-/// Of all lattices and the margins between which something changes.
+/// Checks the skins of all lattices and of the margins between which something changes.
 template <class Check>
 void for_all_skins(const Check& check) {
   for (const auto& [name, lattice] : all_lattices_2d()) {

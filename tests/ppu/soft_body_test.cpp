@@ -273,7 +273,7 @@ TEST(SoftBody, ACopyIsASavedState) {
   EXPECT_EQ(run(), first);
 }
 
-/// As a program does that saves bodies in a file.
+/// Programs that save bodies in a file do so.
 TEST(SoftBody, ASavedStateIsSetInAnotherBody) {
   SoftBody<3> body(block_model({2, 2, 2}, rubber()), {0, 1, 0});
   body.add_angular_velocity({1, 2, 3});

@@ -226,7 +226,7 @@ TEST(DrawOrder, ReordersWhatAMeshHas) {
   } catch (const std::invalid_argument& error) {
     EXPECT_STREQ(
         error.what(),
-        "an attribute of 2 values for a mesh that has a vertex 2; expected is one for each vertex, or none");
+        "a mesh attribute has 2 values, but vertex 2 needs one; give one value for each vertex, or none");
   }
 }
 

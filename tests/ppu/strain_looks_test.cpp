@@ -94,7 +94,7 @@ void shake(SoftBody<kDimension>& body, float noise, const VectorOf<kDimension>& 
   body.translate(VectorOf<kDimension>::Zero());  // so that couplings notice
 }
 
-/// Of what BreakTest finds. And SPEs see few breaks too early.
+/// Expects that SPEs miss nothing of what BreakTest finds, and see few breaks too early.
 template <int kDimension, typename Cells>
 void expect_that_nothing_is_missed(const Cells& cells, const SoftBodySettings& settings, float most_noise,
                                    const VectorOf<kDimension>& way) {

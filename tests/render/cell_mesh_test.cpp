@@ -107,7 +107,7 @@ Eigen::Vector3d bent_far_away(const Eigen::Vector3d& x) {
           7 + x.z() - 0.2 * x.x() * x.y()};
 }
 
-/// As floats, which is what is handed over.
+/// The moved corners as floats, which are handed over.
 Vectors moved_corners(Map map) {
   Vectors corners;
   for (const Eigen::Vector3d& corner : rest_corners())

@@ -46,7 +46,7 @@ struct Mesh {
   }
 };
 
-/// With creases: each face has vertices of its own.
+/// A box with creases: each face has vertices of its own.
 Mesh box(const Vector3f& size, std::uint32_t cells) {
   const Vector3f x(size.x(), 0, 0), y(0, size.y(), 0), z(0, 0, size.z()), low = -0.5f * size,
                                                                           high = 0.5f * size;

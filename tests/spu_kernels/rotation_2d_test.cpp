@@ -17,7 +17,7 @@ class Rotation2d : public test::SpuArithmetic {
  protected:
   static double at(vec_float4 v, int lane) { return double{spu_extract(v, lane)}; }
 
-  /// Of one C and S, found in lane `lane` beside other lanes' trouble.
+  /// The direction of one C and S, found in lane `lane` beside other lanes' trouble.
   static std::pair<double, double> direction(float c, float s, int lane, float floor = 0) {
     const vec_float4 cs = spu_insert(c, vec_float4(0, 3e38f, 1e-38f, -1), lane);
     const vec_float4 ss = spu_insert(s, vec_float4(0, 3e38f, -1e-38f, 0), lane);

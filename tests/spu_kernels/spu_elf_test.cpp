@@ -110,7 +110,7 @@ struct BrokenJobs {
     for (const std::uint32_t word : kReturn0) put(word);
   }
 
-  /// Of a first job that does as its words say. The same system runs a second one: loops that a job has broken start anew.
+  /// The failure of a first job that does as its words say. The same system runs a second one: loops that a job has broken start anew.
   std::string failure() {
     const ppu::JobImage broken = jobs.load(kernel), whole = jobs.load(sound);
     std::string message = "none";

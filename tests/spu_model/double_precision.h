@@ -68,7 +68,7 @@ inline Number number_of(std::uint64_t word, const BinaryFormat& format) {
   return number;
 }
 
-/// As instructions read an operand: a denormal is a zero of its sign, and noted.
+/// Reads an operand as instructions do: a denormal is a zero of its sign, and noted.
 inline Number operand(std::uint64_t word, const BinaryFormat& format, Quadword& fpscr, int lane) {
   Number number = number_of(word, format);
   if (number.denormal) {

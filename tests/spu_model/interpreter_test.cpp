@@ -23,7 +23,7 @@ namespace {
 
 constexpr std::uint64_t kLess = kSlowBuild ? 10 : 1;  // where all is slow
 constexpr std::uint64_t kUsualTriples = 100000 / kLess;
-/// Of an instruction that is none of floating point: four words each.
+/// For an instruction that is none of floating point: four words each.
 constexpr std::uint64_t kUsualQuadwords = 20000 / kLess;
 
 std::uint64_t triples() {

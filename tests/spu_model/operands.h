@@ -13,7 +13,7 @@ using Random = std::mt19937_64;
 /// What a register's contents are chosen as.
 enum class Kind { kIntegers, kSingles, kDoubles };
 
-/// By what the instruction reads.
+/// The kind of an instruction by what it reads.
 Kind kind_of(const Instruction& instruction);
 bool is_floating_point(const Instruction& instruction);
 

@@ -11,7 +11,7 @@ using Eigen::Vector3f;
 
 namespace {
 
-/// From a point to a triangle.
+/// The distance from a point to a triangle.
 float distance(const Vector3f& p, const Vector3f& a, const Vector3f& b, const Vector3f& c) {
   const Vector3f normal = (b - a).cross(c - a);
   const auto is_left = [&](const Vector3f& from, const Vector3f& to) {

@@ -63,9 +63,10 @@ inline const NumberRange* number_of(Action action) {
   return found == kNumbers.end() ? nullptr : found;
 }
 
-/// As `body`: for grabbing and holding, the body with the nearest particle; for other actions, all bodies.
+/// A value of `body`: for grabbing and holding, the body with the nearest particle; for other actions, all bodies.
 inline constexpr std::uint32_t kEveryBody = std::numeric_limits<std::uint32_t>::max();
-/// As `hand`: the user's hand at the mouse, and the two at a controller. The hands of a script are numbered from 0, one for each drag.
+/// Values of `hand`: the user's hand at the mouse, and the two at a controller. The hands of a script are numbered from 0, one for each
+/// drag.
 inline constexpr std::uint32_t kUsersHand = std::numeric_limits<std::uint32_t>::max(),
                                kUsersLeftHand = kUsersHand - 1, kUsersRightHand = kUsersHand - 2;
 inline constexpr bool is_users_hand(std::uint32_t hand) { return hand >= kUsersRightHand; }

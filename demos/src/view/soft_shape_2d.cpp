@@ -121,7 +121,7 @@ void SoftShape2d::add_skins(render::Renderer& renderer, WholeSkins& wholes) {
   is_coloured_ = layers_.size() > 1;
 }
 
-/// Of several pieces, the one that has the cell in the middle of the face has the face.
+/// Whether this piece has the face: of several pieces, the one with the cell in the middle of the face has it.
 bool SoftShape2d::has_face() const {
   if (!body_.face || !model_.is_piece()) return body_.face.has_value();
   const auto& cells = model_.whole()->lattice().cells;

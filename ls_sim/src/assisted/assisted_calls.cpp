@@ -24,7 +24,7 @@ int flags_of_host(std::uint32_t flags) {
   return static_cast<int>(flags) & (O_ACCMODE | O_CREAT | O_EXCL | O_TRUNC | O_APPEND);
 }
 
-/// Of a mode of fopen(). [C17, 7.21.5.3]
+/// The flags of open() for a mode of fopen(). [C17, 7.21.5.3]
 std::optional<int> flags_of_mode(const std::string& mode) {
   const bool updates = mode.find('+') != std::string::npos;
   const int access = updates ? O_RDWR : O_WRONLY;
@@ -41,7 +41,7 @@ std::optional<int> flags_of_mode(const std::string& mode) {
   }
 }
 
-/// Of a stream that did not give what was asked for: 0 at its end.
+/// The error of a stream that did not give what was asked for: 0 at its end.
 int error_of(std::FILE* stream) { return std::ferror(stream) != 0 ? errno : 0; }
 
 }  // namespace

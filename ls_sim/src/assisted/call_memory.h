@@ -43,7 +43,7 @@ class CallMemory {
   /// @param listener  empty: nobody
   void set_listener(Listener listener) { listener_ = std::move(listener); }
 
-  /// Up to its zero, at the longest `most` characters or a whole local store.
+  /// Reads a text up to its terminating zero, at most `most` characters or a whole local store.
   std::string text(std::uint32_t lsa, std::size_t most = dma::kLocalStoreBytes) const {
     most = std::min<std::size_t>(most, dma::kLocalStoreBytes);
     std::uint32_t length = 0;

@@ -46,7 +46,7 @@ class Files {
   bool replace_stream(std::uint32_t handle, std::FILE* opened);
 
  protected:
-  /// Of a StandardStream.
+  /// The stream of a StandardStream.
   virtual Stream standard_stream(std::uint32_t handle) = 0;
   virtual bool replace_standard_stream(std::uint32_t handle, const Stream& opened) = 0;
   void close_streams();
@@ -76,7 +76,7 @@ class FilesInFolder final : public Files {
   bool is_interrupted() const override { return interrupted_.load(std::memory_order_relaxed); }
   /// Waits for what a program reads. @return  as HostCalls::standard_input; 0 too when the run is to end
   std::size_t read_input(std::span<char> to) const;
-  /// As at the end of a process.
+  /// Closes all files, as the end of a process does.
   void close_all();
 
  protected:

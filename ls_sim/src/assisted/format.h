@@ -23,7 +23,7 @@ class FormatArguments {
 /// Whether a conversion's length says 64 bits.
 bool is_long_long(const std::string& length);
 
-/// Of an integer whose conversion has this length.
+/// The size in bytes of an integer whose conversion has this length modifier.
 std::uint32_t integer_bytes(const std::string& length);
 
 /// What printf makes of them, cut at 2^20 characters. `l`, `z` and `t` are 32 bits, `ll` and `j` 64, `L` is a double, `%p` shows a

@@ -59,7 +59,7 @@ class EventFacility {
     return pending_ & mask_;
   }
 
-  /// As at the start of a program, when these events are pending.
+  /// Sets the state at the start of a program, when these events are pending.
   void reset(std::uint32_t pending) {
     SC_ASSERT((pending & ~event::kAll) == 0, "events {}; all there are is {}", pending, event::kAll);
     pending_ = pending;

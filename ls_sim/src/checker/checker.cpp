@@ -118,7 +118,7 @@ void Checker::mark_changed_words() {
   last_store_.reset();
 }
 
-/// Of a job's image: whoever calls the job has fetched it.
+/// Checks the code of a job's image, which whoever calls the job has fetched.
 void Checker::check_fetched_code() {
   SC_ASSERT(image_->begin <= image_->data_begin && image_->data_begin <= dma::kLocalStoreBytes,
             "code of {} from {} to {}", image_->name, image_->begin, image_->data_begin);
@@ -311,7 +311,7 @@ const CommandInFlight* Checker::get_beside(const Access& access) const {
   return begin < end ? in_flight_.writing(begin, end - begin) : nullptr;
 }
 
-/// Of an SPU program's store: whether the put leaves bytes of the quadword out, which may be those that the program changes.
+/// For a store of an SPU program: whether the put leaves bytes of the quadword out, which may be those that the program changes.
 bool Checker::is_put_of_a_part(const CommandInFlight& put, std::uint32_t quadword) const {
   if (!runs_spu_program()) return false;
   return std::ranges::none_of(put.ranges, [&](const MovedRange& range) {
@@ -319,7 +319,7 @@ bool Checker::is_put_of_a_part(const CommandInFlight& put, std::uint32_t quadwor
   });
 }
 
-/// Of such a put the store breaks the rule if it changes a byte that is put.
+/// Notes the bytes of such a put: the store breaks the rule if it changes one of them.
 void Checker::watch_bytes_of_put(const Access& store) {
   const std::uint32_t quadword = store.lsa.value;
   const CommandInFlight* const put = in_flight_.reading(quadword, dma::kQuadwordBytes);
@@ -614,7 +614,8 @@ void Checker::end_run() {
 
 // ---- words
 
-/// Of a place in the C library: the line of the program that has called it, and the function that it has called: "lab.c:30 (strlen)".
+/// For a place in the C library, returns the line of the program that has called it, and the function that it has called:
+/// "lab.c:30 (strlen)".
 std::string Checker::place_in_program(Address instruction) const {
   constexpr int kDeepest = 8;  // calls in the library
   CallFrame frame{instruction, stack_pointer_};

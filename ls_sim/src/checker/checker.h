@@ -68,7 +68,7 @@ class Checker final : public ChannelPort, public AccessObserver {
   void on_unchecked_issue(const dma::MfcCommand& command);
 
   /// @param stack  the image's stack; for a job, the part of the resident kernel's stack that is free, too.
-  /// @param forgets  what the last run wrote is nothing to this one; else only its stack is.
+  /// @param forgets  if true, everything that the last run wrote counts as unwritten; else only its stack.
   void begin_run(const KernelImage& image, const StackRange& stack, bool forgets = true);
 
   /// Call after a run that ended without a fault.
@@ -103,7 +103,7 @@ class Checker final : public ChannelPort, public AccessObserver {
  private:
   using Address = dma::LocalStoreAddress;
 
-  /// A line command whose status was not read yet, or a getllar of which nothing has come yet.
+  /// A line command whose status was not read yet, or a getllar that no putllc or putlluc has followed.
   struct LineCommand {
     dma::MfcCommand command;
     Address issued_at;
@@ -177,7 +177,7 @@ class Checker final : public ChannelPort, public AccessObserver {
 
   Surroundings to_;
   const KernelImage* image_ = nullptr;
-  /// By the image's file, which its lines keep: a job loop changes between images all the time.
+  /// Debug information by the image's file, which its lines keep: a job loop changes between images all the time.
   std::unordered_map<const void*, std::unique_ptr<DebugInformation>> known_files_;
   const DebugInformation* debug_information_ = nullptr;  ///< of image_
   std::optional<ObjectMap> objects_;

@@ -60,7 +60,7 @@ class HeapBlocks {
     return block.first + block.second.whole;
   }
 
-  /// By address. Those that were freed stay until others take their place.
+  /// Blocks by address. Those that were freed stay until others take their place.
   std::map<std::uint32_t, Block> blocks_;
 };
 

@@ -142,10 +142,11 @@ class Door final : public ProblemState {
   }
   dma::EffectiveAddress local_store_ea() const override { return ea_; }
 
-  /// As the image that is loaded has its local store.
+  /// Sets the byte order of the local store, which is that of the loaded image.
   void set_big_endian(bool is_big_endian) { proxy_.set_big_endian(is_big_endian); }
 
-  /// The hardware's transfers need nobody's help: before the PPU side waits, or the SPE sleeps.
+  /// Moves all proxy transfers that can move. Call it before the PPU side waits or the SPE sleeps: on the hardware transfers go on
+  /// meanwhile.
   void move_proxy() {
     while (proxy_.advance()) {
     }
@@ -165,7 +166,7 @@ class Door final : public ProblemState {
     monitor_.ppu_pause(lock);
   }
 
-  /// With the lock.
+  /// Reads a register and wakes who may wait for it. Call it with the lock.
   std::optional<std::uint32_t> take(Read read) {
     const auto value = (registers_.*read)();
     if (value) monitor_.wake(number_);  // it may wait to write the next

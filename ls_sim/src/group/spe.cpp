@@ -123,7 +123,7 @@ RunResult Spe::execute(const Run& run) {
   return result;
 }
 
-/// By the clock of the trace.
+/// The time by the clock of the trace.
 TraceTime Spe::trace_time() const {
   return timer_ == nullptr ? trace_now() : TimedChannels::nanoseconds(timer_->clock.now());
 }
@@ -143,7 +143,7 @@ class Spe::TimeOfSpe final : public TimeOrder {
   const int spe_;
 };
 
-/// With the model of time between the engine and its channels, if there is one.
+/// Runs the engine with the model of time between it and its channels, if there is one.
 RunResult Spe::run_timed(const Run& run, ChannelPort& channels, AccessObserver* accesses, JobObserver* jobs) {
   if (timer_ == nullptr) return engine_->run(run.arguments, channels, accesses, jobs);
   TimeOfSpe order(monitor_, number_);

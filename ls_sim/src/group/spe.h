@@ -46,10 +46,10 @@ class Spe final : public dma::LocalStorePort, private dma::ReservationListener, 
   /// Sets the proxy queue, whose commands move at the SPE's channel operations. It outlives the SPE's runs.
   void set_proxy(dma::ProxyQueue* proxy) { channels_.set_proxy(proxy); }
 
-  /// Who is told of stops that do not end a program; null: such a stop ends the run, too.
+  /// Sets the listener for stops that do not end a program. Null: such a stop ends the run, too.
   void set_stop_listener(StopListener* listener) { channels_.set_stop_listener(listener); }
 
-  /// Sets which effective addresses mean something else to this SPE, while no run is in progress.
+  /// Sets the window through which this SPE reaches the threads of its own group, while no run is in progress.
   void set_window(dma::AddressWindow window) { mfc_.set_window(std::move(window)); }
 
   /// Sets the images of jobs. They outlive the SPE's runs.
@@ -58,7 +58,7 @@ class Spe final : public dma::LocalStorePort, private dma::ReservationListener, 
   /// Announces an image that a resident kernel may fetch from now on. Any thread.
   void announce_job_image(const KernelImage& image);
 
-  /// Whoever loads programs clears their bss, as a loader of ELF files does: it counts as written.
+  /// Declares that loading a program clears its bss, as an ELF loader does; the checker then counts bss as written.
   void set_clears_bss() { clears_bss_ = true; }
 
   /// Loads the image. Any thread, while no run is in progress.
@@ -73,13 +73,13 @@ class Spe final : public dma::LocalStorePort, private dma::ReservationListener, 
   /// the monitor's lock.
   void interrupt(Interrupt why);
 
-  /// Of its engine. Any thread, while no run is in progress.
+  /// The engine's position. Any thread, while no run is in progress.
   dma::LocalStoreAddress position() const { return engine_->position(); }
 
   /// Guarded by the monitor.
   SpeRegisters& registers() { return registers_; }
 
-  /// Up to the end of the last run or job. With the monitor's lock.
+  /// The statistics up to the end of the last run or job. Call it with the monitor's lock.
   const SpeStatistics& statistics() const { return published_; }
   void publish_statistics() { published_ = statistics_; }
 

@@ -117,7 +117,7 @@ namespace {
 /// A number that is taken, while the object lives.
 class Number {
  public:
-  /// With the lock. @pre it is free
+  /// Takes the number, with the lock. @pre it is free
   Number(SpeMonitor& monitor, Slots& slots, int number) : value(number), monitor_(monitor), slots_(slots) {
     SC_ASSERT(!slot().taken, "context number {} is taken", number);
     slot().taken = true;
@@ -274,7 +274,7 @@ class Context final : public SpeContext, private StopListener {
     if (phase_ == Phase::kRunning) throw std::logic_error("the SPE context runs");
   }
 
-  /// With the lock.
+  /// Starts the context, with the lock.
   void start(SpeMonitor::HostTime now) {
     SC_ASSERT(image_ != nullptr && phase_ != Phase::kRunning, "context {} starts in phase {}", number_->value,
               phase_);

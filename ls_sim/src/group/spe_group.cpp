@@ -22,7 +22,7 @@ struct Orders {
   std::condition_variable changed;
 };
 
-/// Of other programs for the SPU nobody knows where main is, nor how much stack it takes.
+/// Refuses other programs for the SPU: nobody knows where their main is, nor how much stack it takes.
 void require_kernel(const KernelImage& image, const char* what) {
   if (image.main != 0) return;
   throw std::invalid_argument(image.name + " was not built by softcell_add_spu_kernel, as " + what +
@@ -97,7 +97,7 @@ struct SpeGroup::State final : RunSource {
     }
   }
 
-  /// With the lock. @return  false when nothing was prepared, or the SPE runs.
+  /// Starts the prepared run, with the lock. @return  false when nothing was prepared, or the SPE runs.
   bool start_prepared(int spe) {
     Orders& mine = orders[index(spe)];
     if (!mine.prepared || monitor().runs(spe)) return false;

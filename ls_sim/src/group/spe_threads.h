@@ -23,7 +23,7 @@ class RunSource {
   /// @return  nothing when the thread is to end.
   virtual std::optional<Run> next_run(int spe, SpeMonitor::Lock& lock) = 0;
 
-  /// With the lock; the SPE no longer runs.
+  /// Called with the lock, after the SPE's run.
   virtual void on_ended(int spe, const Run& run, RunResult&& result) = 0;
 };
 

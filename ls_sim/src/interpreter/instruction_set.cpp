@@ -8,7 +8,7 @@ namespace {
 constexpr unsigned kIndexBits = 11;  // of the longest opcode
 constexpr std::size_t kIndexSize = std::size_t{1} << kIndexBits;
 
-/// From the first eleven bits of a word to its instruction.
+/// Maps the first eleven bits of a word to its instruction.
 constexpr std::array<Mnemonic, kIndexSize> make_index() {
   std::array<Mnemonic, kIndexSize> index{};
   index.fill(Mnemonic::invalid);

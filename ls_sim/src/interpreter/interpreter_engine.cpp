@@ -202,7 +202,7 @@ RunResult InterpreterEngine::run(const EntryArguments& arguments, ChannelPort& c
 
 void InterpreterEngine::execute(Core& core, Checks* checks, JobCalls& jobs) {
   const SpuArithmetic arithmetic;
-  /// With the checks before it, if there are any.
+  /// Runs with the checks before each instruction, if there are any.
   const auto run_checked = [&](auto& observer) {
     if (checks == nullptr) return run(core, observer, jobs);
     JobAccesses of_jobs(jobs, checks->accesses);

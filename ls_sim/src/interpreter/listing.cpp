@@ -34,7 +34,7 @@ std::uint32_t word_at(const KernelImage& image, std::uint32_t address) {
   return word;
 }
 
-/// Of a branch whose target the word says.
+/// The note on the target of a branch whose word says it.
 std::string target_note(const KernelImage& image, const Operation& op, std::uint32_t address) {
   const InstructionInfo& info = info_of(op.mnemonic);
   if (info.kind != Kind::kJump || info.format != Format::kRi16) return {};

@@ -16,7 +16,7 @@
 
 namespace softcell::ls_sim::interpreter {
 
-/// Of one run. An observer of the run loop asks it in the SPU's floating-point mode.
+/// Follows undefined bits through one run. An observer of the run loop asks it in the SPU's floating-point mode.
 class UndefinedValues {
  public:
   explicit UndefinedValues(EntryState entry);

@@ -123,7 +123,8 @@ class NativeEngine final : public Engine {
   std::uint32_t stack_high_water() const override;
 
  private:
-  /// Of what a kernel writes as one: on an SPU it is the same as a pointer, which here lies in the host's memory.
+  /// Converts what a kernel writes as a local-store address: on an SPU it is the same as a pointer, which here lies in the host's
+  /// memory.
   std::uint32_t local_store_address(std::uint32_t value) const {
     const std::uint32_t offset = value - static_cast<std::uint32_t>(arena());
     return offset < dma::kLocalStoreBytes ? offset : value;

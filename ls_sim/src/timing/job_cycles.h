@@ -10,7 +10,7 @@
 
 namespace softcell::ls_sim {
 
-/// Of one SPE. Used by the thread that runs it.
+/// Times the jobs of one SPE. Used by the thread that runs it.
 class JobTimer {
  public:
   void begin(const SimulatedClock& clock) { begin_ = clock.now(), waited_ = clock.waited(); }

@@ -21,10 +21,10 @@ class MfcTimer {
   MfcTimer(int spe, ElementInterconnect& interconnect, PortUse& port, const TimingParameters& parameters)
       : spe_(spe), interconnect_(interconnect), port_(port), parameters_(parameters) {}
 
-  /// Of a command that waits for an acknowledgement.
+  /// The completion time of a command that waits for an acknowledgement.
   static constexpr std::uint64_t kNotYet = std::numeric_limits<std::uint64_t>::max();
 
-  /// As Mfc::begin_job(): nothing is queued.
+  /// Begins a run, with nothing queued, as Mfc::begin_job() does.
   void begin_run();
 
   /// When there is room for another command. @param now  of the SPE

@@ -45,7 +45,7 @@ class TimedChannels final : public ChannelPort {
         is_big_endian_(is_big_endian),
         cycles_per_operation_(cycles_per_operation) {}
 
-  /// Of the simulated clock.
+  /// Nanoseconds of the simulated clock.
   static TraceTime nanoseconds(std::uint64_t cycles) {
     constexpr std::uint64_t kPerFiveNanoseconds = 16;
     static_assert(kCyclesPerSecond * 5 == kPerFiveNanoseconds * 1'000'000'000);
@@ -75,7 +75,7 @@ class TimedChannels final : public ChannelPort {
   const bool is_big_endian_;
   const std::uint32_t cycles_per_operation_;
   std::uint32_t tag_mask_ = 0, requested_tags_ = 0, condition_ = 0;
-  /// By tag, the command that was issued last and has stalled, as the trace counts.
+  /// For each tag the command that was issued last and has stalled, as the trace counts.
   std::array<std::optional<std::size_t>, dma::kTagCount> stalled_commands_;
   dma::MfcCommand parameters_{};  ///< as written to channels 16 to 20 so far
 };

@@ -20,8 +20,8 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-/// Of all bodies of a world: momentum, angular momentum about the origin, kinetic and potential energy, and the scales that errors of
-/// momenta are measured by.
+/// Sums over all bodies of a world: momentum, angular momentum about the origin, kinetic and potential energy, and the scales that
+/// errors of momenta are measured by.
 struct Sums {
   Vector3d momentum{0, 0, 0}, spin{0, 0, 0};
   double kinetic = 0, potential = 0;

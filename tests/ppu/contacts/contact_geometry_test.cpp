@@ -533,7 +533,7 @@ class TwoBoxes {
     beside_.begin(obstacles_, kNear, obstacles_[0], 1);
   }
   bool face_goes_on(const Vector3f& point) { return beside_.face_goes_on(point, {0, 0, 3}); }
-  /// Of a point of the world, by the nearest face.
+  /// The way out of a point of the world, by the nearest face.
   std::optional<Separation> way_out(const Vector3f& point) { return way_out(point, point); }
   std::optional<Separation> way_out(const Vector3f& point, const Vector3f& from) {
     return way_out(point, from, from);
@@ -544,7 +544,7 @@ class TwoBoxes {
     return beside_.way_out(own, separation(obstacles_[0], own), obstacles_[0].to_own(from),
                            obstacles_[0].to_own(inside));
   }
-  /// Of the first box's side in the plane x = 0, or its upper one in y = 0. @param place  in the world
+  /// Whether the first box's side in the plane x = 0, or its upper one in y = 0, is covered. @param place  in the world
   bool is_covered(const Vector3f& place, const Vector3f& normal) {
     return beside_.is_covered(obstacles_[0].to_own(place), normal);
   }

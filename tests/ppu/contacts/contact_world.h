@@ -103,7 +103,7 @@ class ContactWorld {
   BulletSoftBodies& bodies;
 };
 
-/// Of the tests' bodies.
+/// The settings of the tests' bodies.
 inline SoftBodySettings settings_of(float cell_size, float alpha = 0.5f, float damping = 0.1f) {
   SoftBodySettings settings;
   settings.cell_size = cell_size;

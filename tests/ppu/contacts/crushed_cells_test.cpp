@@ -20,7 +20,7 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-/// Of a cell, as a share of that at rest: of the parallelepiped of its mean edges.
+/// The volume of a cell, as a share of that at rest: of the parallelepiped of its mean edges.
 float volume_of(const SoftBody<3>& body, std::size_t cell) {
   const auto& corners = body.model().lattice().corners[cell];
   Eigen::Matrix3f edges = Eigen::Matrix3f::Zero();
@@ -159,7 +159,7 @@ std::ptrdiff_t stay_inside_out_in_a_shaft(SolverFactory* solvers, std::size_t& m
   return count;
 }
 
-/// Of 900 cells. Two, with SPEs, do not come back within that second.
+/// There are 900 cells. Two, with SPEs, do not come back within that second.
 TEST(CrushedCells, NearlyAllComeBackInAShaft) {
   if (kSlowBuild) GTEST_SKIP() << "too slow with sanitizers, which run the other tests of this file";
   std::size_t reported = 0;

@@ -446,7 +446,7 @@ TEST_P(FlatContacts, WhatHangsOverTheEndOfAnEdgeSlidesOff) {
   }
 }
 
-/// By how much a body that lies on a level ground is slowed down when it slides, as a coefficient.
+/// The coefficient by which a body is slowed down that slides on a level ground.
 double friction_of_slide(World2d& w, SoftBody<2>& body) {
   const float before = body.linear_momentum().x();
   body.add_velocity({3, 0});
@@ -508,7 +508,7 @@ TEST_P(FlatContacts, BoxesSideBySideDoNotStopASoftBody) {
   }
 }
 
-/// Of two restitutions Box2D takes the larger one.
+/// Box2D takes the larger one of two restitutions.
 TEST_P(FlatContacts, RestitutionIsTheLargerOfBoth) {
   for (const auto& [of_body, of_floor] : {std::pair(0.0f, 0.6f), {0.6f, 0.2f}}) {
     const auto w = world();
@@ -591,7 +591,7 @@ TEST_P(FlatContacts, AForceOnABoxPressesAsItsWeightDoes) {
   EXPECT_LT(DrawnFlat(body).depth(corners_of(*box, {0.6f, 0.2f})), 0.05f);
 }
 
-/// Of the force that a joint has at most: it pulls with all of it, towards a place far below.
+/// Joints press with the force that they have at most: each pulls with all of it, towards a place far below.
 TEST_P(FlatContacts, JointsPressWithTheirForce) {
   for (const bool by_mouse : {true, false}) {
     const auto w = world();

@@ -140,7 +140,7 @@ TEST_P(FlatJoints, ABridgeOfPlanksCarriesABlock) {
   }
 }
 
-/// As fast as its motor, if that is strong enough; with half of what both weigh they come down at half of g.
+/// A lift moves as fast as its motor, if that is strong enough; with half of what both weigh they come down at half of g.
 TEST_P(FlatJoints, ALiftIsAsStrongAsItsMotor) {
   for (const float strength : {3.0f, 0.5f}) {
     const auto s = scene();

@@ -42,7 +42,7 @@ TEST(SkylineFactor, SolvesWhatItsMatrixSays) {
   for (std::size_t i = 0; i < kRows; ++i) EXPECT_NEAR(values[i], static_cast<double>(i + 1), 1e-12) << i;
 }
 
-/// Of 2 kg, with a moment of inertia of 1 kg m^2.
+/// A plank of 2 kg, with a moment of inertia of 1 kg m^2.
 ContactRigid plank() {
   ContactRigid rigid;
   rigid.inverse_mass = 0.5f;
@@ -192,7 +192,7 @@ struct UnderACube {
     joints.push_back(std::move(made));
     return joint;
   }
-  /// From wall to wall, each pinned to the next one on both sides, hanging a little.
+  /// Planks from wall to wall, each pinned to the next one on both sides, hanging a little.
   void add_bridge(int count, float mass) {
     constexpr float kHalf = 0.12f, kGap = 0.01f, kSide = 0.35f;
     std::vector<float> turns;
@@ -413,7 +413,7 @@ TEST(Joints, OneThatBreaksBreaksUnderASoftBody) {
   }
 }
 
-/// Of all kinds of Bullet's joints: their rows say what Bullet makes of velocities.
+/// The rows of all kinds of Bullet's joints say what Bullet makes of velocities.
 TEST(JointRows, AreThoseOfAHinge) {
   btBoxShape box(btVector3(0.5f, 0.1f, 0.1f));
   btVector3 inertia;

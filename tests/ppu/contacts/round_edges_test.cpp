@@ -45,7 +45,7 @@ struct Prism {
   }
 };
 
-/// Of a round thing of radius r a chord of 0.7 cells cuts off 0.7^2 cells^2 / (8 r): 0.06 cells if the cells are as large as the radius.
+/// A chord of 0.7 cells cuts off 0.7^2 cells^2 / (8 r) of a round thing of radius r: 0.06 cells if the cells are as large as the radius.
 TEST(RoundEdges, OfAPrismOfManySidesAreFeltByBodiesWithCellsBelowItsRadius) {
   for (const float radius : {0.01f, 0.25f, 30.0f}) {
     for (const int sides : {48, 32, 24}) {

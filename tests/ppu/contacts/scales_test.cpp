@@ -74,7 +74,7 @@ Scaled run_at_scale(float cell) {
   return result;
 }
 
-/// From cells of 1 mm to cells of 100 m. The scene is 16 cells wide, so this is 0.3 % of it.
+/// Cells are 1 mm to 100 m. The scene is 16 cells wide, so this is 0.3 % of it.
 TEST(SoftOnRigid, TheSceneEndsInTheSameShapeForTheSameCostAtEveryScale) {
   if (kSlowBuild) GTEST_SKIP() << "too slow with sanitizers, which run the other tests of this file";
   const Scaled expected = run_at_scale(0.1f);

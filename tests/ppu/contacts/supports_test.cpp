@@ -22,7 +22,7 @@ using Eigen::Vector3f;
 constexpr float kHalf = 0.5f;  // of a crate, metres
 constexpr float kCells = 0.1f;
 
-/// Of 2 kg; it falls with the gravity of a substep.
+/// A crate of 2 kg; it falls with the gravity of a substep.
 ContactRigid crate(const Vector3f& centre) {
   ContactRigid rigid;
   rigid.centre = centre;
@@ -116,7 +116,7 @@ TEST(Supports, APairThatIsPressedKeepsItsMomentum) {
   }
 }
 
-/// By Coulomb's law, as long as that is no more than what soft bodies can have meant.
+/// It slides by Coulomb's law, as long as that is no more than what soft bodies can have meant.
 TEST(Supports, WhatIsPressedHarderThanFrictionHoldsSlides) {
   constexpr float kFriction = 0.5f;
   for (const float across : {0.1f, 0.9f, 100.0f}) {

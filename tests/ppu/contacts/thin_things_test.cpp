@@ -110,7 +110,7 @@ TEST_P(ThinThings, NothingHangsBetweenWallsThatTouchAtTheirEdges) {
     throw_in_room(GetParam(), thickness, 0, 0.85f, 0.15f * kOfThrown);
 }
 
-/// As a flipper does: the bar ends up in the body's way, in one step farther than it is thick.
+/// The bar acts as a flipper does: it ends up in the body's way, in one step farther than it is thick.
 TEST_P(ThinThings, ABodyFliesOffTheBarThatHitsIt) {
   for (const float alpha : {0.2f, 0.5f, 0.8f}) {
     for (const float turn : {5.0f, 8.0f, 15.0f}) {  // rad/s

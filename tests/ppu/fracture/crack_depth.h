@@ -9,7 +9,7 @@
 
 namespace softcell::ppu {
 
-/// Of particles that a crack across x has made two of: how far the right one is left of the left one, in cells.
+/// For particles that a crack across x has made two of, how far the right one is left of the left one, in cells.
 template <int kDimension>
 float deepest_in_crack(const SoftBody<kDimension>& bar) {
   const Lattice<kDimension>& lattice = bar.model().lattice();

@@ -32,7 +32,7 @@ inline std::size_t unmet_sides(const TriangleMesh& mesh) {
   return unmet;
 }
 
-/// Of bodies together, about the origin.
+/// Momenta of bodies together, about the origin.
 struct Momenta {
   double mass = 0;
   Eigen::Vector3d momentum{0, 0, 0}, angular_momentum{0, 0, 0}, moment{0, 0, 0};

@@ -24,7 +24,7 @@ SoftBodySettings paper() { return {.cell_size = 0.1f, .half_width = 1, .density 
 
 double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
-/// Of bodies together, about the origin.
+/// Momenta of bodies together, about the origin.
 struct Momenta2d {
   double mass = 0, angular_momentum = 0;
   Vector2d momentum{0, 0}, moment{0, 0};

@@ -136,7 +136,7 @@ TEST(RandomBreaks, LeaveNoNanNoDanglingReferenceAndNoMoreEnergy) {
   EXPECT_GT(vanished, 0u);
 }
 
-/// Of this process, resident, in megabytes.
+/// The resident memory of this process, megabytes.
 double megabytes_in_use() {
   std::ifstream file("/proc/self/statm");
   double program = 0, resident = 0;

@@ -11,7 +11,7 @@ class App;
 namespace softcell::tool {
 
 struct CommandOption {
-  /// With their dashes, short ones first; a positional has one, without dashes.
+  /// The names with their dashes, short ones first; a positional has one, without dashes.
   std::vector<std::string> names;
   /// The placeholder of its value: FILE, DIR, SCENE, "eager|lazy|random:SEED"; empty: a flag.
   std::string value;

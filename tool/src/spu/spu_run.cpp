@@ -30,7 +30,7 @@ namespace softcell::tool {
 
 namespace {
 
-/// With several SPEs, the output of each call is printed at once.
+/// The host's calls for a run. With several SPEs, the output of each call is printed at once.
 ls_sim::HostCalls host_calls_of(const SpuRunOptions& options) {
   const auto printing_to = [](std::FILE* file) {
     return [file](std::string_view text) {

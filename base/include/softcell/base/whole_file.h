@@ -88,11 +88,11 @@ class WholeFiles {
   /// @return  a reference that is valid as long as this object.
   /// @throws std::runtime_error  with the file and the reason why it cannot be written.
   WholeFile& open(const std::filesystem::path& file) { return files_.emplace_back(file); }
-  /// As WholeFile(stream, called).
+  /// Adds WholeFile(stream, called).
   WholeFile& open(std::FILE* stream, const std::filesystem::path& called) {
     return files_.emplace_back(stream, called);
   }
-  /// As above for an optional path: null for none.
+  /// Opens the file if there is a path. @return  null without one
   WholeFile* open(const std::optional<std::filesystem::path>& file) { return file ? &open(*file) : nullptr; }
 
   /// @throws std::runtime_error  naming the file that cannot be written.

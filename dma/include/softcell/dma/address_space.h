@@ -138,12 +138,12 @@ class AddressSpace {
   /// Whether this storage is the memory of the host program.
   bool is_host_program() const { return host_ != nullptr; }
 
-  /// For the memory of a host program: who knows its allocations, so that the rule ea-outside-allocation can be
-  /// checked; null: nobody. It outlives this object. @pre is_host_program()
+  /// For the memory of a host program: sets the allocator that knows the program's blocks, by which the rule ea-outside-allocation is
+  /// checked. Null: the rule is not checked. `allocations` must outlive this object. @pre is_host_program()
   void set_allocations(const HostAllocations* allocations);
 
   /// The address of this SPE's local store, mapped or not.
-  /// @pre  0 <= spe, and below 6 or the number of HostProgram.
+  /// @pre  0 <= spe < kSpeCount; in a host program's memory, 0 <= spe < HostProgram::spes
   EffectiveAddress local_store_ea(int spe) const;
 
   /// The host address at which this SPE's local store must lie; null: anywhere.

@@ -4,7 +4,7 @@
 // the host's memmove and memset choose for longer ranges. storage_port.h says which bytes this concerns.
 //
 // In one of thirty runs on one kind of host, a thread copied code with `rep movsb` and then executed the old
-// bytes. With vector stores this never happened. docs/notes/performance.md has the figures, docs/reference/architecture.md says what the
+// bytes. With vector stores this never happened. docs/notes/performance.md has the figures, docs/reference/emulator.md says what the
 // processors' manuals promise.
 
 #include <cstddef>

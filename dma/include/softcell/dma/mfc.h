@@ -56,7 +56,7 @@ class Mfc {
   void expect_code_everywhere() { port_.expect_code_everywhere(); }
   LocalStoreAddress code_end() const { return port_.code_end(); }
 
-  /// Sets the effective addresses that mean something else to this SPE; none without this call.
+  /// Sets the window through which this SPE reaches the threads of its own group (AddressWindow); without this call it has none.
   void set_window(AddressWindow window) { port_.set_window(std::move(window)); }
 
   /// Declares the byte order of the local store: see StoragePort. Little-endian without this call.

@@ -47,7 +47,7 @@ class ProxyQueue : private MfcObserver {
   ///          it is not queued.
   std::optional<Fault> issue(const MfcCommand& command);
 
-  /// As Mfc::set_big_endian().
+  /// Declares the byte order of the local store: see StoragePort.
   void set_big_endian(bool is_big_endian);
 
   /// The tags of `tag_mask` without a queued command (Prxy_TagStatus). Time passes.

@@ -47,10 +47,10 @@ class StoragePort {
     SC_ASSERT(local_store != nullptr, "an MFC without a local store");
   }
 
-  /// Sets the addresses that mean something else to this MFC; none until then.
+  /// Sets the window through which this SPE reaches the threads of its own group (AddressWindow); without this call it has none.
   void set_window(AddressWindow window) { window_ = std::move(window); }
 
-  /// As AddressSpace::resolve().
+  /// Resolves an address as AddressSpace::resolve() does, after translating it with the window.
   std::variant<StoragePlace, Fault> resolve(EffectiveAddress ea, std::uint64_t bytes, SpeAccess wanted) {
     ea = window_.translate(ea);
     auto resolved = translation_.resolve(ea, bytes, wanted);
@@ -63,7 +63,7 @@ class StoragePort {
   void set_big_endian(bool is_big_endian) { is_big_endian_ = is_big_endian; }
   bool is_big_endian() const { return is_big_endian_; }
 
-  /// As resolve() for all lines that [ea, ea + bytes) touches. Buffers consist of whole lines, so that a line
+  /// Resolves all lines that [ea, ea + bytes) touches. Buffers consist of whole lines, so that a line
   /// belongs to the buffer that contains its first quadword.
   std::variant<StoragePlace, Fault> resolve_lines(EffectiveAddress ea, std::uint32_t bytes,
                                                   SpeAccess wanted) {

@@ -46,7 +46,7 @@ class Transfer {
     SC_ASSERT(pieces_left_ == pieces_, "{} of {} pieces have moved", pieces_ - pieces_left_, pieces_);
     if (to_ != nullptr) fill_local_store(to_, kPoison, size_);
   }
-  /// As a float on the SPU about -1.2e17, as an integer about -6e8.
+  /// The byte of poison: a float of it is about -1.2e17 on the SPU, an integer about -6e8.
   static constexpr std::byte kPoison{0xDB};
 
  private:

@@ -17,7 +17,7 @@ class TranslationCache {
  public:
   explicit TranslationCache(const AddressSpace& space) : space_(&space) {}
 
-  /// As AddressSpace::resolve().
+  /// Does what AddressSpace::resolve() does, faster.
   std::variant<std::byte*, Fault> resolve(EffectiveAddress ea, std::uint64_t bytes, SpeAccess wanted) {
     if (space_->generation() == generation_) {
       for (const Mapping& mapping : entries_) {

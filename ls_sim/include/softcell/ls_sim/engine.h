@@ -105,8 +105,8 @@ class AccessObserver {
   virtual void on_host_access(dma::LocalStoreAddress, [[maybe_unused]] std::uint32_t bytes,
                               [[maybe_unused]] bool is_store) {}
 
-  /// The C library has given the program a block of its heap (`is_freed`: is about to take it back). Its bytes are those
-  /// that the program has asked for, and its instruction is the call.
+  /// The C library has allocated a block of its heap for the program or, with `is_freed`, is about to free one. `block.bytes` is the size
+  /// that the program asked for, `block.instruction` the call.
   virtual void on_heap_block([[maybe_unused]] const Access& block, [[maybe_unused]] bool is_freed) {}
 
   // Only for programs for the SPU:
@@ -174,7 +174,7 @@ class Engine {
 struct NativeOptions {
   Debugger* debugger = nullptr;  ///< its on_instruction() is called before each instruction; may be null
   int spe = 0;                   ///< the SPE's number, for the debugger
-  /// Of main memory: faults of kernels that follow an effective address as a pointer say so for addresses in it.
+  /// The size of main memory: faults of kernels that follow an effective address as a pointer say so for addresses in it.
   std::uint64_t main_memory_bytes = dma::kMainMemoryBytes;
 };
 

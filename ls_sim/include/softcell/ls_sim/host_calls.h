@@ -18,7 +18,8 @@ struct HostCalls {
   /// Called with the text that a program prints, by the thread that runs its SPE; several SPEs may call at once.
   std::function<void(std::string_view text)> standard_output, standard_error;
   /// Called when a program reads its standard input. @return  how many bytes there were, 0 at the end of the input; nothing: there are none
-  /// yet, and it will be called again. It must not wait longer than a run may last after somebody wants it to end.
+  /// yet, and it will be called again. It must return soon even if there is no input: until it returns, a run that is stopped or has passed
+  /// its deadline cannot end.
   std::function<std::optional<std::size_t>(std::span<char> to)> standard_input;
   /// The only folder in which programs may open and remove files; none: they cannot open or remove any. No path leads out of it, not even
   /// through a symbolic link.

@@ -76,7 +76,8 @@ class SpeContext {
 
   virtual ProblemState& problem_state() = 0;
 
-  /// Sets the effective addresses that mean something else to this context. @throws std::logic_error  it runs.
+  /// Sets the window through which this context reaches the threads of its own group (AddressWindow); without this call it has none.
+  /// @throws std::logic_error  it runs.
   virtual void set_window(dma::AddressWindow window) = 0;
 
   /// The state at this moment.

@@ -125,7 +125,7 @@ class Timing {
   std::vector<KernelCycles> by_kernel() const;
   /// For the instruction at this address, whatever program was there.
   CycleCounts at(int spe, dma::LocalStoreAddress instruction) const;
-  /// By function, the one with the most cycles first. @param image  the image that has run.
+  /// Returns the cycles of each function, the one with the most cycles first. @param image  the image that has run.
   std::vector<FunctionCycles> by_function(int spe, const KernelImage& image) const;
 
   /// Internal to the emulator: for the SPE's own thread.

@@ -78,7 +78,7 @@ class Box2dSoftBodies {
   explicit Box2dSoftBodies(b2World& world, ContactMethod contacts = ContactMethod::kSurface);
   /// @param solvers  makes the solver that does the shape matching: with an SpeRuntime the SPEs do it. Must outlive this object.
   Box2dSoftBodies(b2World& world, SolverFactory& solvers, ContactMethod contacts = ContactMethod::kSurface);
-  /// @param solver  does the shape matching: SpeSolver<2> on the SPEs. Must outlive this object, and serve no other object.
+  /// @param solver  does the shape matching; an SpeSolver<2> does it on SPEs. It must outlive this object, and serve no other object.
   /// @param worker  for ContactMethod::kSurface: finds and solves contacts if there are many, as SolverFactory makes it; null: the
   ///                thread that steps the world does it
   Box2dSoftBodies(b2World& world, SoftBodySolver<2>& solver, ContactMethod contacts = ContactMethod::kSurface,
@@ -170,7 +170,7 @@ class Box2dSoftBodies {
 
   /// The first half of step(), for a program that calls b2World::Step() itself between both halves, with the same length.
   /// @param step  as step()
-  /// @throws std::invalid_argument, std::runtime_error  as step(); end_step() is not called then
+  /// @throws std::invalid_argument, std::runtime_error  as step(); then do not call end_step()
   /// @pre end_step() was called after the last begin_step(), and b2World::Step() is not running
   void begin_step(float step);
   /// The second half of step(). @param step  as in begin_step()  @pre begin_step() was called, and b2World::Step() is not running

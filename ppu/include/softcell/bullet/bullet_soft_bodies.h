@@ -165,9 +165,11 @@ class BulletSoftBodies {
   ///
   /// A sleeping body wakes when something that moves touches it or, with surfaces, reaches its box; when gravity changes; when its user
   /// changes it; and when another soft body of this object, on which it may have lain, is changed or removed. With surfaces it also wakes
-  /// when an object near it is moved, removed or made a trigger volume, or gets another shape, size, group or mask. It does not wake then
-  /// with spheres, for a soft body of another BulletSoftBodies, or if points within a shape change while its box stays the same: wake what
-  /// rested on these yourself, a soft body by add_velocity({0, 0, 0}).
+  /// when an object near it is moved, removed or made a trigger volume, or gets another shape, size, group or mask.
+  ///
+  /// Three changes wake nothing: a change of a rigid body that a body touches with spheres; a change of a soft body of another
+  /// BulletSoftBodies; and points that move within a shape whose box stays the same. Wake what rested there yourself, a soft body by
+  /// add_velocity({0, 0, 0}).
   /// @throws std::invalid_argument  a setting is out of its range
   void let_sleep(const std::optional<SleepSettings>& settings);
 

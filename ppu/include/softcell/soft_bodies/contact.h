@@ -68,7 +68,8 @@ struct SoftContactEvent {
   enum class Kind {
     kBegin,    ///< they touch, and did not then
     kPersist,  ///< they touch, and did then
-    kEnd  ///< they no longer touch. One of them may be removed: then its address only identifies it; do not follow it
+    /// They no longer touch. If one of them has been removed, its pointer only identifies it: do not dereference it.
+    kEnd
   };
   Kind kind = Kind::kBegin;
   const SoftBody<kDimension>* body = nullptr;

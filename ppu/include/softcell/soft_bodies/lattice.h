@@ -52,7 +52,7 @@ struct Lattice {
   Position origin = Position::Zero();  ///< position of grid index 0, metres
   std::vector<GridIndex> particles;    ///< sorted by x, then y, then z; index = particle number
   std::vector<GridIndex> cells;        ///< of each cell's low corner, sorted likewise
-  /// Of each cell: particle numbers, corner k = bx + 2 by + 4 bz.
+  /// For each cell, the numbers of its particles, corner k = bx + 2 by + 4 bz.
   std::vector<std::array<std::uint32_t, kCorners>> corners;
   /// For each cell that a triangle touches: the share of its volume inside the mesh, 0.25..1. For all other cells 1,
   /// also in closed cavities; in two dimensions 1 for all cells.

@@ -45,7 +45,7 @@ struct Skin2d {
   /// The pulls that move vertex i: pulls first_pull[i] to first_pull[i + 1].
   std::vector<Pull2d> pulls;
   std::vector<std::uint32_t> first_pull{0};
-  /// Of each vertex at rest: the slope of a surface that is level in the middle of the body and falls off to its edge.
+  /// For each vertex at rest, the slope of a surface that is level in the middle of the body and falls off to its edge.
   /// It points outwards, is some 0.65 long at the edge, and (0, 0) farther than a cell and a half from the edge.
   std::vector<Eigen::Vector2f> slopes;
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< counter-clockwise at rest

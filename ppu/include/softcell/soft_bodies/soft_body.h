@@ -85,8 +85,8 @@ class SoftBody {
   /// @throws std::runtime_error  a particle is NaN or infinite; nothing has changed then.
   /// @throws std::invalid_argument  the step is not above 0 and finite
   void pull(float step);
-  /// Called instead of pull() by a solver that has computed shape matching and damping from positions() and velocities(). Momenta that the
-  /// solver has lost by rounding are returned.
+  /// Called instead of pull() by a solver that has computed shape matching and damping from positions() and velocities(). Every
+  /// fourth call also restores the momenta that the solver has lost by rounding since the last such call.
   /// @param velocity_of  returns particle i's velocity in m/s for each i
   template <typename VelocityOf>
   void set_pulled_velocities(const VelocityOf& velocity_of) {
@@ -96,8 +96,8 @@ class SoftBody {
   /// Lets a plastic body flow: changes its rest shape. Every kPlasticSteps-th call looks at the strains. If the body may yield, another
   /// thread computes the flow, and the call kFlowSteps steps later applies the result, for which it may have to wait, unless the body has
   /// sprung back so far that this would add energy. Only such steps allocate memory.
-  /// @param stretch  how much distances differ from those of the rest shape, as the SPEs' solver has measured it: saves most looks, and
-  ///                 does not change results. Nothing: not measured
+  /// @param stretch  by how much distances between particles differ from those of the rest shape, if the solver has measured that. It
+  ///                 saves most looks and does not change results. None: not measured
   void flow(float step, std::optional<float> stretch = {});
   /// Whether the next flow() looks at the strains.
   bool will_look() const;

@@ -40,7 +40,8 @@ class SoftBodySolver {
   virtual void prepare(const std::shared_ptr<const SoftBodyModel<kDimension>>& /*model*/) {}
 
   /// Passes what the solver knows of a body on to a piece of it. Call it for each piece, after the last step of the whole body. The piece's
-  /// model must have been prepared. The body that is stepped next may be another object of the same model.
+  /// model must have been prepared. The solver keeps this for the first body of that model that it steps next, which need not be `piece`
+  /// itself.
   /// @param whole  the body that broke   @param piece  one of its pieces
   /// @param particle_of  for each particle of the piece, its number in the whole
   /// @pre no step is under way
@@ -48,8 +49,8 @@ class SoftBodySolver {
                              [[maybe_unused]] const SoftBody<kDimension>& piece,
                              [[maybe_unused]] std::span<const std::uint32_t> particle_of) {}
 
-  /// Whether a face of the body may have broken before the step that finish() ended last. A solver that has checked that none has returns
-  /// false, which saves the caller the check. @pre nothing has moved the body since finish()
+  /// Whether a face of the body may have broken before the step that finish() ended last. Returns false only if the solver has found that
+  /// no face can have broken; the caller then need not check. @pre nothing has moved the body since finish()
   virtual bool may_break(const SoftBody<kDimension>& /*body*/) const { return true; }
 };
 

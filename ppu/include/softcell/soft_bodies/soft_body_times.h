@@ -8,7 +8,7 @@ namespace softcell::ppu {
 /// The time that the soft bodies of a BulletSoftBodies or Box2dSoftBodies have taken since its construction, by parts. Processor times are
 /// those of the thread that steps the world.
 struct SoftBodyTimes {
-  /// Processor time: particles from the engine, inner ones integrated, breaks, sleep.
+  /// Processor time to take particles over from the engine, integrate inner ones, test for breaks, and put bodies to sleep.
   std::chrono::nanoseconds gather{0};
   std::chrono::nanoseconds solve{0};     ///< processor time of the solver on this thread
   std::chrono::nanoseconds apply{0};     ///< processor time: velocities to the engine

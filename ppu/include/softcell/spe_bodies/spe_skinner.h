@@ -54,7 +54,8 @@ struct DrawOrder {
   /// in the mesh, and some occur twice.
   std::span<const std::uint32_t> mesh_vertex;
 
-  /// An attribute of the mesh's vertices (texture coordinates, colours) in this order; empty if it is empty, as it is of a mesh without it.
+  /// Returns an attribute of the mesh's vertices (texture coordinates, colours) in this order. If the mesh does not have the attribute,
+  /// `of_mesh` is empty, and so is the result.
   /// @throws std::invalid_argument  it has values, but none for one of the mesh's vertices
   template <class Value>
   std::vector<Value> reorder(const std::vector<Value>& of_mesh) const {
@@ -63,9 +64,9 @@ struct DrawOrder {
     reordered.reserve(mesh_vertex.size());
     for (const std::uint32_t vertex : mesh_vertex) {
       if (vertex >= of_mesh.size())
-        throw std::invalid_argument("an attribute of " + std::to_string(of_mesh.size()) +
-                                    " values for a mesh that has a vertex " + std::to_string(vertex) +
-                                    "; expected is one for each vertex, or none");
+        throw std::invalid_argument("a mesh attribute has " + std::to_string(of_mesh.size()) +
+                                    " values, but vertex " + std::to_string(vertex) +
+                                    " needs one; give one value for each vertex, or none");
       reordered.push_back(of_mesh[vertex]);
     }
     return reordered;

@@ -44,8 +44,8 @@ struct MatchKernels<3> {
 /// bodies: a body that is restored from a copy begins without rotations.
 ///
 /// The rest shapes of plastic bodies flow on the PPU, in finish(). A plastic body has its own plan in main memory, which its SPE fetches
-/// for this body alone. Beside the step, SPEs check whether bodies of 128 to some 10,000 particles yield or break; the PPU looks closely at
-/// those that may.
+/// for this body alone. While they step bodies, SPEs also check whether bodies of 128 to some 10,000 particles yield or break; the PPU
+/// looks closely at those that may.
 ///
 /// One SPE steps a body that fits a local store, together with other bodies of its model. In three dimensions all SPEs together step a
 /// larger body, in tiles. The PPU steps bodies that no SPE can step, while the SPEs step the others: in two dimensions bodies that do not

@@ -47,7 +47,7 @@ struct SkinnedDraw {
   Colour colour{0.8f, 0.8f, 0.8f};
   float opacity = 1;       ///< 0..1; below 1 the mesh is blended over what is behind it and casts no shadow
   bool two_sided = false;  ///< draw inner sides, too, for meshes with holes; takes about 1.6 times as long
-  /// Around the drawn mesh, metres. None: all its triangles are drawn, however small.
+  /// A box around the drawn mesh, metres. None: all its triangles are drawn, however small.
   std::optional<Eigen::AlignedBox3f> box = {};
   std::optional<TextureId> texture = {};  ///< its colours are multiplied with `colour`; none: `colour` alone
   /// Parts with their own materials, instead of `colour` and `texture`; triangles in no part are not drawn. None: the whole mesh has one

@@ -97,7 +97,7 @@ struct Frame2d {
   std::span<const Links2d> links = {};
   std::span<const Line2d> lines = {};
   std::span<const Dots2d> dots = {};
-  /// As FrameDescription::changes.
+  /// Outside of this rectangle the picture is the same as in the last frame: see FrameDescription::changes.
   std::optional<PixelRect> changes = {};
 };
 

@@ -46,8 +46,9 @@ struct RendererSettings {
   float coarse_pixels = 0;
 };
 
-/// Meshes, pictures and shapes live until the program removes them or the renderer. A program that removes one must no longer draw with its
-/// handle: render() refuses a handle that names nothing, but one that is added later may have got it.
+/// Meshes, pictures and shapes live until the program removes them or the renderer. After a program has removed one, it must not draw with
+/// its handle again. render() refuses a handle that names nothing, but cannot notice if a mesh, picture or shape added later has got the
+/// same handle.
 ///
 /// Draws with one sun that casts soft-edged shadows, light from sky and ground with ambient occlusion, tone mapping and sRGB encoding, with
 /// four samples per pixel. With one sample it smooths edges in the finished picture. It draws into its own framebuffer and has no global
