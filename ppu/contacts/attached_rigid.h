@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
+#include "ppu/numbers/wide_inverse.h"
 #include "ppu/surfaces/obstacle.h"
 
 namespace softcell::ppu {
@@ -59,8 +60,8 @@ struct AttachedRigid<3> {
   static Eigen::Matrix3f inertia_of_arm(const Vector& arm) {
     return arm.squaredNorm() * Eigen::Matrix3f::Identity() - arm * arm.transpose();
   }
-  static bool can_turn(const Rigid& rigid) { return rigid.inverse_inertia.determinant() > 0; }
-  static Eigen::Matrix3f inertia(const Rigid& rigid) { return rigid.inverse_inertia.inverse(); }
+  static bool can_turn(const Rigid& rigid) { return rigid.inverse_inertia.cast<double>().determinant() > 0; }
+  static Eigen::Matrix3f inertia(const Rigid& rigid) { return wide_inverse(rigid.inverse_inertia); }
   static void change(Rigid& rigid, const Vector& velocity, const Axial& spin) {
     rigid.velocity += velocity;
     rigid.spin += spin;

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "ppu/numbers/turning.h"
+#include "ppu/numbers/wide_inverse.h"
 #include "softcell/base/assert.h"
 #include "softcell/base/text.h"
 
@@ -134,8 +135,10 @@ Matrix inverse_of_few(const Matrix& matrix) {
   SC_ASSERT(matrix.rows() > 0 && matrix.rows() <= kMost, "{} rows, of at most {}", matrix.rows(), kMost);
   if constexpr (kMost > 1) {
     if (matrix.rows() < kMost) return inverse_of_few<kMost - 1>(matrix);
+    return wide_inverse(Eigen::Matrix<float, kMost, kMost>(matrix));
+  } else {
+    return Matrix::Constant(1, 1, 1 / matrix(0, 0));
   }
-  return Eigen::Matrix<float, kMost, kMost>(matrix).inverse();
 }
 
 }  // namespace
@@ -373,8 +376,8 @@ auto AttachmentRows<kDimension>::begin_row(Row& row) -> Vector {
     return apart;
   }
   if (!with_rigid_at_once_)
-    row.inverse_mobility =
-        sides_.rigid != nullptr ? Matrix(mobility.inverse()) : Matrix(Matrix::Identity() / mobility(0, 0));
+    row.inverse_mobility = sides_.rigid != nullptr ? Matrix(wide_inverse(mobility))
+                                                   : Matrix(Matrix::Identity() / mobility(0, 0));
   const float most = most_of_error(mobility.trace() / kDimension), speed = row.error.norm();
   if (speed > most) row.error *= most / speed;
   pushes_ = pushes_ || (softness_ == 0 && speed > 0);
@@ -436,7 +439,7 @@ void AttachmentRows<kDimension>::begin_weld_to_rigid() {
     inverse_inertia_ += mass * Of::inertia_of_arm(arm);
   }
   inverse_inertia_ -= Of::inertia_of_arm(sum_of_arms_) / sum_;
-  inverse_inertia_ = inverse_inertia_.inverse().eval();
+  inverse_inertia_ = wide_inverse(inverse_inertia_);
 }
 
 /// A rope's length is limited at the point that its ends reach by circling each other, not by moving straight on. So the rope takes no

@@ -596,6 +596,29 @@ TEST_P(SolvedBy, ARigidBodyFeelsWhatHangsOnIt) {
   EXPECT_NEAR(own.x(), 0.36f, 0.05f) << "it turns with the box";
 }
 
+/// Determinants of masses and inertias were 0 or infinite in single precision, and positions NaN after the first step.
+TEST_P(SolvedBy, AttachmentsHoldFromAMillimetreToAKilometre) {
+  for (const float scale : {0.001f, 0.01f, 100.0f, 1000.0f}) {
+    SCOPED_TRACE(scale);
+    const float cell = scale / 4;
+    AttachedWorld w(GetParam(), {0, -9.81f * scale, 0});
+    const TriangleMesh mesh = make_box({2 * scale, scale, scale}, cell);
+    SoftBody<3>& left = w.add(mesh, settings_of(cell), {0, 0, 0});
+    SoftBody<3>& right = w.add(mesh, settings_of(cell), {2 * scale, 0, 0});
+    const float half = 0.5f * scale;
+    btRigidBody& box = w.add(std::make_unique<btBoxShape>(btVector3(half, half, half)), left.model().mass(),
+                             {-1.5f * scale, 0, 0});
+    w.bodies.attach(left, Patch<3>::of_surface({-scale, 0, 0}, half), box);
+    w.bodies.attach(left, Patch<3>::of_surface({scale, 0, 0}, half), right,
+                    Patch<3>::of_surface({scale, 0, 0}, half));
+    w.run(15);
+    const float fallen = 0.5f * 9.81f * scale * 0.25f * 0.25f;
+    for (const SoftBody<3>* const body : {&left, &right})
+      EXPECT_NEAR(body->centre_of_mass().y(), -fallen, 0.05f * fallen);
+    EXPECT_NEAR(height_of(box), -fallen, 0.05f * fallen);
+  }
+}
+
 /// A spring of a known stiffness gives as Hooke says.
 TEST_P(SolvedBy, ComplianceGives) {
   AttachedWorld w(GetParam());
