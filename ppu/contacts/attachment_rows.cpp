@@ -722,18 +722,24 @@ double AttachmentRows<kDimension>::share_taken_back(const Row& row, const Vector
 }
 
 template <int kDimension>
-void AttachmentRows<kDimension>::take_back_spin(bool is_alone) {
+bool AttachmentRows<kDimension>::is_apart() const {
+  constexpr float kMost = 0.1f;  // cells
+  return state_.gap > kMost * sides_.a.spacing;
+}
+
+template <int kDimension>
+void AttachmentRows<kDimension>::take_back_spin(bool agrees) {
   if (!takes_back_spin()) return;
   Axial given = turning::cross(Eigen::Vector<double, kDimension>::Zero().eval(),
                                Eigen::Vector<double, kDimension>::Zero().eval());
   // Without compliance, the ends of attachments that contradict each other are apart.
-  if (softness_ > 0 || is_alone)
+  if (softness_ > 0 || agrees)
     for (const Row& row : rows_) {
       const Vector apart = a_.of(row.a, sides_.a.positions) - row.point;
       given += share_taken_back(row, apart) * turning::cross(apart.template cast<double>().eval(),
                                                              row.impulse.template cast<double>().eval());
     }
-  if (pushes_soft_body_only() && is_alone) given += spin_of_pushes();
+  if (pushes_soft_body_only() && agrees) given += spin_of_pushes();
   TurnedPatches<kDimension> patches;
   patches.add(sides_.a, patch_of(a_, rows_.front().a));
   if (sides_.b != nullptr) patches.add(*sides_.b, patch_of(b_, rows_.front().b));

@@ -130,8 +130,10 @@ class AttachmentRows {
   /// Takes back the angular momentum that an attachment has added by error: if it is compliant its ends are apart, so its two impulses do
   /// not lie on one line if the ends also move sideways; and particles that follow a rigid body are pushed while they move. It turns the
   /// patches of soft bodies, no rigid body. Call it after finish() of all attachments, or after a kernel.
-  /// @param is_alone  a has no other attachment: those that contradict each other push again and again, which would count each time
-  void take_back_spin(bool is_alone);
+  /// @param agrees  no other attachment of a contradicts this one: those that do push again and again, which would count each time
+  void take_back_spin(bool agrees);
+  /// Whether the ends were apart at the substep's beginning, as those of attachments are that contradict each other.
+  bool is_apart() const;
   bool takes_back_spin() const;
 
   /// A rigid body presses on held particles as on a wall. An attachment that breaks as it carries more than expected carries all of it in

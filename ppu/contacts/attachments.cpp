@@ -67,7 +67,13 @@ void Attachments<kDimension>::find_those_alone(std::size_t bodies, std::size_t r
     if (sides.b != AttachmentSides::kNone) work(attached_to_[sides.b]);
     if (sides.rigid != AttachmentSides::kNone) work(attached_to_[bodies + sides.rigid]);
   };
-  for (const Solved& solved : solved_) of_each_side(solved.sides, [](std::uint32_t& count) { ++count; });
+  contradicted_.assign(bodies, false);
+  for (const Solved& solved : solved_) {
+    of_each_side(solved.sides, [](std::uint32_t& count) { ++count; });
+    if (!solved.rows->is_apart()) continue;
+    contradicted_[solved.sides.a] = true;
+    if (solved.sides.b != AttachmentSides::kNone) contradicted_[solved.sides.b] = true;
+  }
   for (Solved& solved : solved_) {
     solved.once = solved.rows->is_direct();
     of_each_side(solved.sides, [&](const std::uint32_t& count) { solved.once = solved.once && count == 1; });
@@ -98,7 +104,8 @@ void Attachments<kDimension>::finish() {
 
 template <int kDimension>
 void Attachments<kDimension>::take_back_spin() {
-  for (const Solved& solved : solved_) solved.rows->take_back_spin(attached_to_[solved.sides.a] == 1);
+  for (const Solved& solved : solved_)
+    solved.rows->take_back_spin(attached_to_[solved.sides.a] == 1 || !contradicted_[solved.sides.a]);
 }
 
 template <int kDimension>

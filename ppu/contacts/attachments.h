@@ -109,6 +109,7 @@ class Attachments final : public AttachmentSolver<kDimension> {
   std::vector<Solved> solved_;  // the attachments with a side that may move
   std::vector<std::pair<std::uint32_t, std::uint32_t>> parted_;
   std::vector<std::uint32_t> attached_to_;  // soft bodies, then rigid ones: how many of solved_ each has
+  std::vector<bool> contradicted_;          // of each body: the ends of one of its attachments are apart
 };
 
 extern template class Attachments<2>;
