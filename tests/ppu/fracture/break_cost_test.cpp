@@ -69,7 +69,7 @@ void expect_no_stall(const char* what, double most_ms, const Run& run) {
   EXPECT_LT(least.stall(), kBusy * most_ms);
 }
 
-constexpr std::pair<int, double> kSizes[] = {{1000, 2.0}, {20000, 5.0}};  // particles, milliseconds
+constexpr std::pair<int, double> kSizes[] = {{1000, 0.5}, {20000, 2.5}};  // particles, milliseconds
 
 /// A sphere whose halves fly apart.
 TEST(BreakCost, NoSubstepOfASphereStallsWhenPiecesCome) {
