@@ -1,6 +1,7 @@
 #pragma once
 // What couplings to engines refuse alike.
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <stdexcept>
@@ -33,6 +34,18 @@ const auto& body_at(const CoupledBodies& bodies, std::size_t index) {
     throw std::out_of_range("soft body " + std::to_string(index) + " of a world of " +
                             std::to_string(bodies.size()) + "; the first one is 0");
   return std::as_const(*bodies[index]).soft();
+}
+
+/// Where a soft body is among those of a world.
+/// @param purpose  "to be cut"   @param coupling  the class's name
+/// @throws std::invalid_argument  it is none of them
+template <class CoupledBodies, class Body>
+auto find_coupled(CoupledBodies& bodies, const Body& body, const char* purpose, const char* coupling) {
+  const auto found = std::find_if(bodies.begin(), bodies.end(),
+                                  [&](const auto& coupled) { return &coupled->soft() == &body; });
+  if (found == bodies.end())
+    throw std::invalid_argument(std::string("the soft body ") + purpose + " is not one of this " + coupling);
+  return found;
 }
 
 }  // namespace softcell::ppu

@@ -404,6 +404,7 @@ void SoftBody<kDimension>::inherit_state(const SoftBody& whole, std::span<const 
               particle_of[i], whole.x_.size());
     set_particle(i, whole.x_[particle_of[i]], whole.v_[particle_of[i]]);
   }
+  SC_ASSERT(model_->is_piece(), "a body of {} particles that is no piece inherits a state", x_.size());
   matcher_->take_rotations(*whole.matcher_, particle_of);
   const double share = double{model_->mass()} / double{whole.model_->mass()};
   lost_->inherit(*whole.lost_, std::min(share, 1.0), precise_centre_of_mass() - centre);
@@ -563,6 +564,8 @@ void SoftBody<kDimension>::add_velocity(const Vector& dv) {
 template <int kDimension>
 void SoftBody<kDimension>::add_particle_velocity(std::size_t particle, const Vector& dv) {
   SC_ASSERT(particle < v_.size(), "particle {} of {}", particle, v_.size());
+  SC_ASSERT(dv.allFinite(), "infinity or NaN is added to the velocity of particle {} of {}", particle,
+            v_.size());
   v_[particle] += dv;
   ++revision_;
 }
@@ -613,7 +616,7 @@ auto SoftBody<kDimension>::angular_momentum() const -> AxialVector {
 
 template <int kDimension>
 Bounds<kDimension> SoftBody<kDimension>::bounds() const {
-  SC_ASSERT(!x_.empty(), "a body without particles has no box, nor {} velocities", v_.size());
+  SC_ASSERT(!x_.empty(), "a body without particles has no box");
   return box_around<Bounds<kDimension>>(x_);
 }
 

@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "ppu/contacts/attachment_patch.h"
-#include "ppu/numbers/deterministic_math.h"
 #include "softcell/base/assert.h"
 
 namespace softcell::ppu {
@@ -18,13 +17,6 @@ namespace {
 using Eigen::Vector2f;
 
 constexpr int kIterations = 20;  // of attachments that share bodies
-
-Eigen::Matrix2f rotation_of(float angle) {
-  const auto s = static_cast<float>(sine(double{angle})), c = static_cast<float>(cosine(double{angle}));
-  Eigen::Matrix2f rotation;
-  rotation << c, -s, s, c;
-  return rotation;
-}
 
 AttachmentFrame<2> frame_of(const b2Transform& pose) {
   AttachmentFrame<2> frame;
@@ -121,36 +113,23 @@ AttachmentId Box2dAttachments::add(Link link) {
   return added.id;
 }
 
-template <class Which>
-void Box2dAttachments::end_links(EndedAttachment::Reason reason, const Which& which) {
-  for (const auto& link : links_.take(which)) {
-    ended_.push_back({link->id, reason});
-    wake(*link);
-    refilter(*link);
-  }
+void Box2dAttachments::release(const Link& link) {
+  wake(link);
+  refilter(link);
 }
 
 void Box2dAttachments::remove(AttachmentId id) {
   end_gone();
   links_.at(id);  // or throws
-  for (const auto& link : links_.take([&](const Link& other) { return other.id == id; })) {
-    wake(*link);
-    refilter(*link);
-  }
+  for (const auto& link : links_.take([&](const Link& other) { return other.id == id; })) release(*link);
 }
 
 void Box2dAttachments::move(AttachmentId id, const Vector2f& position, float angle, float seconds) {
-  Link& link = links_.at(id);
-  if (link.b != nullptr || link.rigid != nullptr)
-    throw std::invalid_argument("an attachment to another body cannot be moved; only those to the world can");
+  Link& link = links_.to_world(id);
   if (!position.allFinite() || !std::isfinite(angle))
     throw std::invalid_argument(
         "an attachment is moved to a place, or turned by an angle, that is not finite");
-  check_seconds_of_move(seconds);
-  link.hold.goal = position;
-  link.hold.goal_angle = angle;
-  link.hold.seconds = seconds;
-  link.hold.moves = true;
+  link.hold.move(position, angle, seconds);
   wake(link);
 }
 
@@ -175,20 +154,14 @@ std::optional<AttachmentEnds<2>> Box2dAttachments::ends(AttachmentId id) const {
                          link->rigid != nullptr ? frame_of(link->rigid->GetTransform()) : link->hold.frame);
 }
 
-std::vector<EndedAttachment> Box2dAttachments::take_ended() { return std::exchange(ended_, {}); }
-
 void Box2dAttachments::forget(const Box2dBody& body) {
   end_gone();
-  end_links(EndedAttachment::Reason::kGone,
-            [&](const Link& link) { return link.a == &body || link.b == &body; });
+  links_.end_those_of(body, [&](const Link& link) { release(link); });
 }
 
 void Box2dAttachments::follow_pieces(const Box2dBody& body, std::span<const Piece> pieces,
                                      std::span<const std::vector<std::uint32_t>> vanished) {
-  if (links_.empty()) return;
-  const PiecesOfPatches<Box2dBody> of_patches(body, pieces, vanished);
-  end_links(EndedAttachment::Reason::kGone, [&](const Link& link) { return of_patches.is_gone(link); });
-  end_links(EndedAttachment::Reason::kBroken, [&](Link& link) { return !of_patches.follow(link); });
+  links_.follow_pieces(body, pieces, vanished, [&](const Link& link) { release(link); });
 }
 
 bool Box2dAttachments::holds(const Box2dBody& body) const {
@@ -196,11 +169,8 @@ bool Box2dAttachments::holds(const Box2dBody& body) const {
 }
 
 void Box2dAttachments::end_gone() {
-  end_links(EndedAttachment::Reason::kGone, [&](Link& link) {
-    if (link.rigid == nullptr || has_body(world_, link.rigid)) return false;
-    link.rigid = nullptr;
-    return true;
-  });
+  links_.end_gone([&](const Link& link) { return has_body(world_, link.rigid); },
+                  [&](const Link& link) { release(link); });
 }
 
 void Box2dAttachments::lay_out(const Box2dBody& body, InStep& in_step, float step) const {
@@ -261,7 +231,7 @@ std::span<const AttachmentInStep<2>> Box2dAttachments::begin(
   end_gone();
   to_solve_.clear();
   for (const auto& link : links_) {
-    if (link->hold.moves) link->hold.begin(step);
+    link->hold.begin(step);
     AttachmentInStep<2>& in_step = to_solve_.emplace_back();
     in_step.rows = &link->rows;
     in_step.a = index_of(link->a, bodies);
@@ -279,9 +249,8 @@ std::span<const AttachmentInStep<2>> Box2dAttachments::begin(
 }
 
 void Box2dAttachments::end() {
-  for (const auto& link : links_)
-    if (link->hold.moves) link->hold.end();
-  end_links(EndedAttachment::Reason::kBroken, [](const Link& link) { return link.rows.broke(); });
+  for (const auto& link : links_) link->hold.end();
+  links_.end_broken([&](const Link& link) { release(link); });
 }
 
 void Box2dAttachments::solve(std::span<const std::unique_ptr<Box2dBody>> bodies, float step) {
@@ -314,23 +283,6 @@ void Box2dAttachments::solve(std::span<const std::unique_ptr<Box2dBody>> bodies,
     if (held[i]) finish(*bodies[i], in_step_[i], step);
   move_rigids(step);
   end();
-}
-
-/// Moves evenly, and in the last step exactly to the goal.
-void Box2dAttachments::Hold::begin(float step) {
-  const bool arrives = !(step < seconds);
-  const float share = arrives ? 1.0f : step / seconds;
-  frame.end_position = arrives ? goal : Vector2f(frame.position + share * (goal - frame.position));
-  angle = arrives ? goal_angle : angle + share * (goal_angle - angle);
-  frame.end_rotation = rotation_of(angle);
-  seconds -= step;
-  moves = true;
-}
-
-void Box2dAttachments::Hold::end() {
-  frame.position = frame.end_position;
-  frame.rotation = frame.end_rotation;
-  moves = seconds > 0;
 }
 
 }  // namespace softcell::ppu

@@ -45,7 +45,7 @@ class Box2dAttachments {
   void shift(const Eigen::Vector2f& by);
   std::optional<AttachmentState<2>> state(AttachmentId id) const;
   std::optional<AttachmentEnds<2>> ends(AttachmentId id) const;
-  std::vector<EndedAttachment> take_ended();
+  std::vector<EndedAttachment> take_ended() { return links_.take_ended(); }
   /// Whether two bodies may collide as far as attachments are concerned.
   bool may_touch(const b2Body& a, const b2Body& b) const;
   /// Whether an attachment keeps a body that Box2D does not know of from colliding with a rigid one.
@@ -75,17 +75,6 @@ class Box2dAttachments {
   void solve(std::span<const std::unique_ptr<Box2dBody>> bodies, float step);
 
  private:
-  /// The place in the world that holds a link, and the place to which the program moves it.
-  struct Hold {
-    AttachmentFrame<2> frame{};
-    Eigen::Vector2f goal{0, 0};
-    float angle = 0, goal_angle = 0;  // radians
-    float seconds = 0;                // until it arrives
-    bool moves = false;
-
-    void begin(float step);  ///< sets its place at the step's end
-    void end();
-  };
   struct Link {
     AttachmentId id{};
     Box2dBody* a = nullptr;
@@ -93,7 +82,7 @@ class Box2dAttachments {
     b2Body* rigid = nullptr;  // null: the world
     bool touch = false;
     AttachmentRows<2> rows;
-    Hold hold;
+    HeldPlace<2> hold;
   };
   /// A soft body in one step.
   struct InStep {
@@ -104,8 +93,8 @@ class Box2dAttachments {
   AttachmentId add(Link link);
   static std::uint32_t index_of(const Box2dBody* body, std::span<const std::unique_ptr<Box2dBody>> bodies);
   void end_gone();
-  template <class Which>
-  void end_links(EndedAttachment::Reason reason, const Which& which);
+  /// Wakes the bodies of a link that has ended, and lets them collide.
+  void release(const Link& link);
   void refilter(const Link& link);
   static void wake(const Link& link);
   void lay_out(const Box2dBody& body, InStep& in_step, float step) const;
@@ -117,7 +106,6 @@ class Box2dAttachments {
   std::function<Box2dBody*(const b2Body&)> soft_body_of_;
   Box2dFilter& filter_;
   AttachmentLinks<Link> links_;
-  std::vector<EndedAttachment> ended_;
   // For one step:
   std::vector<AttachmentInStep<2>> to_solve_;
   Attachments<2> attachments_;

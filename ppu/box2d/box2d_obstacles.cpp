@@ -290,8 +290,14 @@ void Box2dObstacles::number_bodies() {
     known_bodies_.emplace(*body, KnownBody{next_number_++});
 }
 
+bool Box2dObstacles::has(const b2Body* body) const {
+  SC_ASSERT(world_ != nullptr, "one of {} bodies is looked for before begin()", known_bodies_.size());
+  return known_bodies_.contains(body);
+}
+
 /// Computes the hash at most once in a step, as a chain may be long.
 std::uint64_t Box2dObstacles::look(const b2Body& body) {
+  SC_ASSERT(world_ != nullptr, "one of {} bodies is looked at before begin()", known_bodies_.size());
   KnownBody& known = known_bodies_.at(&body);
   if (known.looked != steps_) {
     known.looked = steps_;

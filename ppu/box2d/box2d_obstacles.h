@@ -55,7 +55,7 @@ class Box2dObstacles {
   b2Fixture& fixture(std::uint32_t obstacle) const { return *fixtures_[obstacle]; }
 
   /// Whether the world has a body. It may have been destroyed. @pre begin() was called
-  bool has(const b2Body* body) const { return known_bodies_.contains(body); }
+  bool has(const b2Body* body) const;
 
   /// A number that a body of the world keeps as long as it exists.
   std::uint32_t number(const b2Body& body) const { return known_bodies_.at(&body).number; }

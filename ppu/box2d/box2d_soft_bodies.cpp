@@ -113,12 +113,7 @@ struct Box2dSoftBodies::Impl {
 
   /// @throws std::invalid_argument
   auto find(const SoftBody<2>& body, const char* purpose) {
-    const auto found =
-        std::ranges::find_if(bodies, [&](const auto& coupled) { return &coupled->soft() == &body; });
-    if (found == bodies.end())
-      throw std::invalid_argument(std::string("the soft body ") + purpose +
-                                  " is not one of this Box2dSoftBodies");
-    return found;
+    return find_coupled(bodies, body, purpose, "Box2dSoftBodies");
   }
   Box2dBody& find_attachable(const SoftBody<2>& body) {
     Box2dBody& coupled = **find(body, "to be attached");

@@ -93,6 +93,65 @@ Vector3f extent_of(const btBoxShape& box) {
   return extent.unaryExpr([&](float half) { return with_thickness(half, extent.maxCoeff()); });
 }
 
+// What an obstacle of a shape is. The obstacle has the shape's place already.
+
+void set_plane(const btStaticPlaneShape& plane, Obstacle& obstacle) {
+  const Vector3f normal = to_eigen(plane.getPlaneNormal());
+  obstacle.kind = ObstacleKind::kPlane;
+  obstacle.position += obstacle.rotation * (plane.getPlaneConstant() * normal);
+  obstacle.rotation = obstacle.rotation * from_y_to(normal);
+}
+
+void set_sphere(const btSphereShape& sphere, Obstacle& obstacle, std::vector<ObstacleEdge>& edges) {
+  obstacle.kind = ObstacleKind::kBox;
+  obstacle.rounding = sphere.getRadius();
+  edges.push_back({Vector3f::Zero(), Vector3f::Zero()});
+  obstacle.edges = edges;
+}
+
+void set_box(const btBoxShape& box, Obstacle& obstacle, std::vector<ObstacleEdge>& edges) {
+  obstacle.kind = ObstacleKind::kBox;
+  obstacle.extent = extent_of(box);
+  add_edges_of_box(obstacle.extent, edges);
+  obstacle.edges = edges;
+}
+
+void set_capsule(const btCapsuleShape& capsule, Obstacle& obstacle, std::vector<ObstacleEdge>& edges) {
+  obstacle.kind = ObstacleKind::kBox;
+  obstacle.rotation = obstacle.rotation * from_y_to(capsule.getUpAxis());
+  obstacle.extent = {0, capsule.getHalfHeight(), 0};
+  obstacle.rounding = capsule.getRadius();
+  edges.push_back({-obstacle.extent, obstacle.extent});
+  obstacle.edges = edges;
+}
+
+void set_cylinder(const btCylinderShape& cylinder, Obstacle& obstacle, std::vector<ObstacleEdge>& edges) {
+  const int axis = cylinder.getUpAxis();
+  obstacle.kind = ObstacleKind::kCylinder;
+  obstacle.rotation = obstacle.rotation * from_y_to(axis);
+  obstacle.extent = {cylinder.getRadius(),
+                     with_thickness(cylinder.getHalfExtentsWithMargin()[axis], cylinder.getRadius()), 0};
+  for (const float height : {-obstacle.extent.y(), obstacle.extent.y()})
+    add_rim(obstacle.extent.x(), height, edges);
+  add_axis_of_cylinder(obstacle.extent.x(), obstacle.extent.y(), edges);
+  obstacle.edges = edges;
+}
+
+void set_cone(const btConeShape& cone, Obstacle& obstacle, std::vector<ObstacleEdge>& edges) {
+  obstacle.kind = ObstacleKind::kCone;
+  obstacle.rotation = obstacle.rotation * from_y_to(cone.getConeUpIndex());
+  obstacle.extent = {cone.getRadius(), cone.getHeight() / 2, 0};
+  add_axis_of_cone(obstacle.extent.x(), obstacle.extent.y(), edges);
+  add_rim(obstacle.extent.x(), -obstacle.extent.y(), edges);
+  obstacle.edges = edges;
+}
+
+void set_multi_sphere(const btMultiSphereShape& shape, Obstacle& obstacle, std::vector<ObstacleEdge>& edges) {
+  set_sphere_or_capsule(shape, obstacle);
+  edges.push_back({-obstacle.extent, obstacle.extent});
+  obstacle.edges = edges;
+}
+
 bool is_under_way(const btCollisionObject& object) { return may_move(object) && object.isActive(); }
 
 /// The velocity without contacts: Bullet adds forces, gravity among them, later in its step.
@@ -346,6 +405,21 @@ void BulletObstacles::push(const Obstacle& obstacle, std::vector<std::uint32_t>&
   obstacles_.push_back(obstacle);
 }
 
+void BulletObstacles::add_compound(const btCompoundShape& compound, const btTransform& pose,
+                                   std::uint32_t rigid, std::uint32_t part, const Bounds<3>& box,
+                                   std::vector<std::uint32_t>& indices) {
+  const int children = compound.getNumChildShapes();
+  for (int i = 0; i < children; ++i) {
+    const btTransform place = pose * compound.getChildTransform(i);
+    btVector3 low, high;
+    compound.getChildShape(i)->getAabb(place, low, high);
+    if (overlap({to_eigen(low), to_eigen(high)}, box))
+      add_shape(*compound.getChildShape(i), place, rigid,
+                part * static_cast<std::uint32_t>(children + 1) + static_cast<std::uint32_t>(i + 1), box,
+                indices);
+  }
+}
+
 void BulletObstacles::add_shape(const btCollisionShape& shape, const btTransform& pose, std::uint32_t rigid,
                                 std::uint32_t part, const Bounds<3>& box,
                                 std::vector<std::uint32_t>& indices) {
@@ -355,84 +429,34 @@ void BulletObstacles::add_shape(const btCollisionShape& shape, const btTransform
   obstacle.part = part;
   obstacle.position = to_eigen(pose.getOrigin());
   obstacle.rotation = to_eigen(pose.getBasis());
-  std::vector<ObstacleEdge>* edges = nullptr;
   switch (shape.getShapeType()) {
-    case COMPOUND_SHAPE_PROXYTYPE: {
-      const auto& compound = static_cast<const btCompoundShape&>(shape);
-      const int children = compound.getNumChildShapes();
-      for (int i = 0; i < children; ++i) {
-        const btTransform place = pose * compound.getChildTransform(i);
-        btVector3 low, high;
-        compound.getChildShape(i)->getAabb(place, low, high);
-        if (overlap({to_eigen(low), to_eigen(high)}, box))
-          add_shape(*compound.getChildShape(i), place, rigid,
-                    part * static_cast<std::uint32_t>(children + 1) + static_cast<std::uint32_t>(i + 1), box,
-                    indices);
-      }
-      return;
-    }
-    case STATIC_PLANE_PROXYTYPE: {
-      const auto& plane = static_cast<const btStaticPlaneShape&>(shape);
-      const Vector3f normal = to_eigen(plane.getPlaneNormal());
-      obstacle.kind = ObstacleKind::kPlane;
-      obstacle.position += obstacle.rotation * (plane.getPlaneConstant() * normal);
-      obstacle.rotation = obstacle.rotation * from_y_to(normal);
+    case COMPOUND_SHAPE_PROXYTYPE:
+      return add_compound(static_cast<const btCompoundShape&>(shape), pose, rigid, part, box, indices);
+    case STATIC_PLANE_PROXYTYPE:
+      set_plane(static_cast<const btStaticPlaneShape&>(shape), obstacle);
       break;
-    }
     case SPHERE_SHAPE_PROXYTYPE:
-      obstacle.kind = ObstacleKind::kBox;
-      obstacle.rounding = static_cast<const btSphereShape&>(shape).getRadius();
-      edges = &more_edges();
-      edges->push_back({Vector3f::Zero(), Vector3f::Zero()});
+      set_sphere(static_cast<const btSphereShape&>(shape), obstacle, more_edges());
       break;
     case BOX_SHAPE_PROXYTYPE:
-      obstacle.kind = ObstacleKind::kBox;
-      obstacle.extent = extent_of(static_cast<const btBoxShape&>(shape));
-      edges = &more_edges();
-      add_edges_of_box(obstacle.extent, *edges);
+      set_box(static_cast<const btBoxShape&>(shape), obstacle, more_edges());
       break;
-    case CAPSULE_SHAPE_PROXYTYPE: {
-      const auto& capsule = static_cast<const btCapsuleShape&>(shape);
-      obstacle.kind = ObstacleKind::kBox;
-      obstacle.rotation = obstacle.rotation * from_y_to(capsule.getUpAxis());
-      obstacle.extent = {0, capsule.getHalfHeight(), 0};
-      obstacle.rounding = capsule.getRadius();
-      edges = &more_edges();
-      edges->push_back({-obstacle.extent, obstacle.extent});
+    case CAPSULE_SHAPE_PROXYTYPE:
+      set_capsule(static_cast<const btCapsuleShape&>(shape), obstacle, more_edges());
       break;
-    }
-    case CYLINDER_SHAPE_PROXYTYPE: {
-      const auto& cylinder = static_cast<const btCylinderShape&>(shape);
-      const int axis = cylinder.getUpAxis();
-      obstacle.kind = ObstacleKind::kCylinder;
-      obstacle.rotation = obstacle.rotation * from_y_to(axis);
-      obstacle.extent = {cylinder.getRadius(),
-                         with_thickness(cylinder.getHalfExtentsWithMargin()[axis], cylinder.getRadius()), 0};
-      edges = &more_edges();
-      for (const float height : {-obstacle.extent.y(), obstacle.extent.y()})
-        add_rim(obstacle.extent.x(), height, *edges);
-      add_axis_of_cylinder(obstacle.extent.x(), obstacle.extent.y(), *edges);
+    case CYLINDER_SHAPE_PROXYTYPE:
+      set_cylinder(static_cast<const btCylinderShape&>(shape), obstacle, more_edges());
       break;
-    }
-    case CONE_SHAPE_PROXYTYPE: {
-      const auto& cone = static_cast<const btConeShape&>(shape);
-      obstacle.kind = ObstacleKind::kCone;
-      obstacle.rotation = obstacle.rotation * from_y_to(cone.getConeUpIndex());
-      obstacle.extent = {cone.getRadius(), cone.getHeight() / 2, 0};
-      edges = &more_edges();
-      add_axis_of_cone(obstacle.extent.x(), obstacle.extent.y(), *edges);
-      add_rim(obstacle.extent.x(), -obstacle.extent.y(), *edges);
+    case CONE_SHAPE_PROXYTYPE:
+      set_cone(static_cast<const btConeShape&>(shape), obstacle, more_edges());
       break;
-    }
-    default: {
+    default:
       if (shape.isConcave()) return add_triangles(shape, obstacle, box, indices);
       if (!shape.isConvex())
         throw std::runtime_error(std::string("soft bodies cannot touch a shape of the kind ") +
                                  shape.getName() + "; it is neither convex nor made of triangles");
       if (is_sphere_or_capsule(shape)) {
-        set_sphere_or_capsule(static_cast<const btMultiSphereShape&>(shape), obstacle);
-        edges = &more_edges();
-        edges->push_back({-obstacle.extent, obstacle.extent});
+        set_multi_sphere(static_cast<const btMultiSphereShape&>(shape), obstacle, more_edges());
         break;
       }
       ConvexHull& hull = hulls_[&shape];
@@ -441,9 +465,7 @@ void BulletObstacles::add_shape(const btCollisionShape& shape, const btTransform
       obstacle.kind = ObstacleKind::kHull;
       obstacle.planes = hull.planes();
       obstacle.edges = hull.edges();
-    }
   }
-  if (edges != nullptr) obstacle.edges = *edges;
   push(obstacle, indices);
 }
 

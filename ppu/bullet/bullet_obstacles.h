@@ -15,6 +15,8 @@
 #include "ppu/surfaces/obstacle.h"
 #include "softcell/soft_bodies/mesh.h"
 
+class btCompoundShape;
+
 namespace softcell::ppu {
 
 /// The rigid bodies of a world that are near some boxes. Used by one thread. Allocates when there are more of them than ever before.
@@ -88,6 +90,9 @@ class BulletObstacles {
   /// @param part  the number of the shape, which no other shape of the rigid body has
   void add_shape(const btCollisionShape& shape, const btTransform& pose, std::uint32_t rigid,
                  std::uint32_t part, const Bounds<3>& box, std::vector<std::uint32_t>& indices);
+  /// Adds the shapes of a compound, which may be compounds.
+  void add_compound(const btCompoundShape& compound, const btTransform& pose, std::uint32_t rigid,
+                    std::uint32_t part, const Bounds<3>& box, std::vector<std::uint32_t>& indices);
   void add_triangles(const btCollisionShape& shape, Obstacle obstacle, const Bounds<3>& box,
                      std::vector<std::uint32_t>& indices);
   std::vector<ObstacleEdge>& more_edges();

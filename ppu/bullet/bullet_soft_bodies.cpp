@@ -222,12 +222,7 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
 
   /// @throws std::invalid_argument  the body is not one of `bodies`
   auto find(const SoftBody<3>& body, const char* purpose) {
-    const auto found = std::find_if(bodies.begin(), bodies.end(),
-                                    [&](const auto& coupled) { return &coupled->soft() == &body; });
-    if (found == bodies.end())
-      throw std::invalid_argument(std::string("the soft body ") + purpose +
-                                  " is not one of this BulletSoftBodies");
-    return found;
+    return find_coupled(bodies, body, purpose, "BulletSoftBodies");
   }
 
   /// The body, after its running break has ended.
@@ -331,8 +326,6 @@ void BulletSoftBodies::remove(const SoftBody<3>& body) {
   impl_->solve.remove(body);
   impl_->breaks.forget(**found);
   impl_->tell_others(**found);
-  SC_ASSERT((*found)->soft().model().particles() > 0, "a body without particles, one of {}, is removed",
-            impl_->bodies.size());
   if (impl_->surfaces) impl_->surfaces->forget(body);
   if (SurfaceBody* const surface = impl_->with_surface(**found)) {
     impl_->surfaces->attachments().forget(*surface);

@@ -8,7 +8,6 @@
 
 #include "ppu/bullet/may_move.h"
 #include "ppu/contacts/attachment_patch.h"
-#include "ppu/numbers/turned_towards.h"
 #include "softcell/base/assert.h"
 
 namespace softcell::ppu {
@@ -37,16 +36,6 @@ bool contains(const std::vector<T*>& list, const void* item) {
 
 }  // namespace
 
-template <class Which>
-void SurfaceAttachments::end_links(EndedAttachment::Reason reason, const Which& which) {
-  const auto gone = links_.take(which);
-  for (const auto& link : gone) {
-    ended_.push_back({link->id, reason});
-    rouse(*link);
-  }
-  if (!gone.empty()) find_islands();
-}
-
 AttachmentId SurfaceAttachments::add(SurfaceBody& body, const Patch<3>& patch, btRigidBody* rigid,
                                      const AttachmentSettings<3>& settings) {
   validate(settings);
@@ -69,7 +58,7 @@ AttachmentId SurfaceAttachments::add(SurfaceBody& body, const Patch<3>& patch, b
                   .rigid_number = number,
                   .touch = touches(full),
                   .rows = AttachmentRows<3>(full, particles, frame),
-                  .hold = {.frame = frame, .goal_position = frame.position}});
+                  .hold = {.frame = frame, .goal = frame.position}});
 }
 
 AttachmentId SurfaceAttachments::add(SurfaceBody& body, const Patch<3>& patch, SurfaceBody& other,
@@ -101,17 +90,11 @@ void SurfaceAttachments::remove(AttachmentId id) {
 
 void SurfaceAttachments::move(AttachmentId id, const Eigen::Vector3f& position,
                               const Eigen::Quaternionf& rotation, float seconds) {
-  Link& link = links_.at(id);
-  if (link.b != nullptr || link.rigid != nullptr)
-    throw std::invalid_argument("an attachment to another body cannot be moved; only those to the world can");
+  Link& link = links_.to_world(id);
   if (!position.allFinite() || !rotation.coeffs().allFinite() || !(rotation.norm() > 0))
     throw std::invalid_argument(
         "an attachment is moved to a place that is not finite, or turned by a rotation of length 0");
-  check_seconds_of_move(seconds);
-  link.hold.goal_position = position;
-  link.hold.goal_rotation = rotation.normalized();
-  link.hold.seconds = seconds;
-  link.hold.moves = true;
+  link.hold.move(position, rotation.normalized(), seconds);
   rouse(link);
 }
 
@@ -129,20 +112,14 @@ std::optional<AttachmentEnds<3>> SurfaceAttachments::ends(AttachmentId id) const
       link->rigid != nullptr ? frame_of(link->rigid->getWorldTransform()) : link->hold.frame);
 }
 
-std::vector<EndedAttachment> SurfaceAttachments::take_ended() { return std::exchange(ended_, {}); }
-
 void SurfaceAttachments::forget(const SurfaceBody& body) {
   end_gone();
-  end_links(EndedAttachment::Reason::kGone,
-            [&](const Link& link) { return link.a == &body || link.b == &body; });
+  if (links_.end_those_of(body, rouse)) find_islands();
 }
 
 void SurfaceAttachments::follow_pieces(const SurfaceBody& body, std::span<const Piece> pieces,
                                        std::span<const std::vector<std::uint32_t>> vanished) {
-  if (links_.empty()) return;
-  const PiecesOfPatches<SurfaceBody> of_patches(body, pieces, vanished);
-  end_links(EndedAttachment::Reason::kGone, [&](const Link& link) { return of_patches.is_gone(link); });
-  end_links(EndedAttachment::Reason::kBroken, [&](Link& link) { return !of_patches.follow(link); });
+  if (links_.follow_pieces(body, pieces, vanished, rouse)) find_islands();
 }
 
 void SurfaceAttachments::rouse(const Link& link) {
@@ -161,11 +138,7 @@ bool SurfaceAttachments::is_there(const Link& link) const {
 
 /// Must be called before anything else reads the rigid bodies of attachments.
 void SurfaceAttachments::end_gone() {
-  end_links(EndedAttachment::Reason::kGone, [&](Link& link) {
-    if (link.rigid == nullptr || is_there(link)) return false;
-    link.rigid = nullptr;
-    return true;
-  });
+  if (links_.end_gone([&](const Link& link) { return is_there(link); }, rouse)) find_islands();
 }
 
 /// Bodies that are attached to the same static body do not form an island.
@@ -251,6 +224,7 @@ void SurfaceAttachments::fill(Attachments<3>& attachments, std::span<SurfaceBody
     return static_cast<std::uint32_t>(found - bodies.begin());
   };
   for (const auto& link : links_) {
+    link->hold.begin(step);
     AttachmentInStep<3> in_step{
         .rows = &link->rows, .a = number_of(link->a), .frame = link->hold.frame, .touch = link->touch};
     if (link->b != nullptr) {
@@ -258,34 +232,14 @@ void SurfaceAttachments::fill(Attachments<3>& attachments, std::span<SurfaceBody
     } else if (link->rigid != nullptr) {
       in_step.rigid = obstacles.rigid_of(*link->rigid);
       in_step.frame = frame_of(obstacles.pose_of(*link->rigid));
-    } else if (link->hold.moves) {
-      Hold moved = link->hold;
-      moved.advance(step);
-      in_step.frame.end_position = moved.frame.position;
-      in_step.frame.end_rotation = moved.frame.rotation;
     }
     attachments.add(in_step);
   }
 }
 
-/// Moves evenly, and in the last step exactly to the goal.
-void SurfaceAttachments::Hold::advance(float step) {
-  const bool arrives = !(step < seconds);
-  const float share = arrives ? 1.0f : step / seconds;
-  frame.position =
-      arrives ? goal_position : Eigen::Vector3f(frame.position + share * (goal_position - frame.position));
-  rotation = turned_towards(rotation, goal_rotation, share);
-  frame.rotation = rotation.toRotationMatrix();
-  frame.end_position = frame.position;
-  frame.end_rotation = frame.rotation;
-  seconds -= step;
-  moves = !arrives;
-}
-
-void SurfaceAttachments::end(float step) {
-  for (const auto& link : links_)
-    if (link->hold.moves) link->hold.advance(step);
-  end_links(EndedAttachment::Reason::kBroken, [](const Link& link) { return link.rows.broke(); });
+void SurfaceAttachments::end() {
+  for (const auto& link : links_) link->hold.end();
+  if (links_.end_broken(rouse)) find_islands();
 }
 
 void SurfaceAttachments::let_sleep(const SleepSettings& sleep) {

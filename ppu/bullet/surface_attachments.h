@@ -39,7 +39,7 @@ class SurfaceAttachments {
             float seconds);
   std::optional<AttachmentState<3>> state(AttachmentId id) const;
   std::optional<AttachmentEnds<3>> ends(AttachmentId id) const;
-  std::vector<EndedAttachment> take_ended();
+  std::vector<EndedAttachment> take_ended() { return links_.take_ended(); }
   /// Removes the attachments of a soft body that is being removed.
   void forget(const SurfaceBody& body);
   using Piece = PieceOfBody<SurfaceBody>;
@@ -59,25 +59,15 @@ class SurfaceAttachments {
   bool joins(const SurfaceBody& body, const btCollisionObject& object) const;
   /// Whether a soft body is attached to the object.
   bool are_to(const btCollisionObject& object) const;
-  /// Adds the attachments of the substep. @param bodies  by their numbers in the substep
+  /// Begins a substep with its attachments, which it adds. @param bodies  by their numbers in the substep
   void fill(Attachments<3>& attachments, std::span<SurfaceBody* const> bodies, BulletObstacles& obstacles,
             float step);
   /// Call it after a substep: ends attachments that broke, and completes the motion of those that the program moves.
-  void end(float step);
+  void end();
   /// Puts an island of attached bodies to sleep when all of it is at rest.
   void let_sleep(const SleepSettings& sleep);
 
  private:
-  /// The place in the world that holds a link, and the place to which the program moves it.
-  struct Hold {
-    AttachmentFrame<3> frame{};  // at the substep's beginning
-    Eigen::Vector3f goal_position{0, 0, 0};
-    Eigen::Quaternionf rotation{1, 0, 0, 0}, goal_rotation{1, 0, 0, 0};
-    float seconds = 0;   // until it arrives
-    bool moves = false;  // it has not arrived yet
-
-    void advance(float step);
-  };
   struct Link {
     AttachmentId id{};
     SurfaceBody* a = nullptr;
@@ -86,7 +76,7 @@ class SurfaceAttachments {
     int rigid_number = 0;          // differs for a body that is added later, even at the same address
     bool touch = false;
     AttachmentRows<3> rows;
-    Hold hold;
+    HeldPlace<3> hold;
   };
   /// Bodies that are attached to each other, directly or through others.
   struct Island {
@@ -96,8 +86,6 @@ class SurfaceAttachments {
   };
 
   AttachmentId add(Link link);
-  template <class Which>
-  void end_links(EndedAttachment::Reason reason, const Which& which);
   void find_islands();
   static void rouse(const Link& link);
   bool is_there(const Link& link) const;
@@ -106,7 +94,6 @@ class SurfaceAttachments {
   const btDiscreteDynamicsWorld& world_;
   AttachmentLinks<Link> links_;
   std::vector<Island> islands_;
-  std::vector<EndedAttachment> ended_;
 };
 
 }  // namespace softcell::ppu

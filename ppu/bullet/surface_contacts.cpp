@@ -129,7 +129,7 @@ void SurfaceContacts::step(std::span<SurfaceBody* const> bodies, float step) {
       return is_awake(object) && !attachments_.joins(*bodies[i], object);
     }));
   }
-  if (!attachments_.empty()) attachments_.end(step);
+  if (!attachments_.empty()) attachments_.end();
   if (watches_) {
     touches_.begin_step();
     note_touches(bodies);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ppu/contacts/contact_terms.h"
+
 namespace softcell::ppu {
 namespace {
 

@@ -4,7 +4,6 @@
 #include <Eigen/Core>
 #include <optional>
 
-#include "ppu/contacts/contact_terms.h"
 #include "ppu/surfaces/obstacle.h"
 
 namespace softcell::ppu {

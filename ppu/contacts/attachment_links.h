@@ -1,6 +1,8 @@
 #pragma once
 // What the couplings to Bullet and Box2D share about attachments: a list of links with numbers, each with its rows (attachment_rows.h).
 
+#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -10,10 +12,12 @@
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "ppu/contacts/attachment_rows.h"
+#include "ppu/numbers/turned_towards.h"
 #include "softcell/base/text.h"
 #include "softcell/soft_bodies/attachment.h"
 
@@ -42,6 +46,61 @@ inline void check_seconds_of_move(float seconds) {
     throw std::invalid_argument("an attachment is moved within " + base::shortest(seconds) +
                                 " s; it must be 0 or above, and finite");
 }
+
+/// The place in the world that holds a link, and the place to which the program moves it.
+template <int kDimension>
+struct HeldPlace {
+  using Vector = Eigen::Vector<float, kDimension>;
+  using Turn = std::conditional_t<kDimension == 2, float, Eigen::Quaternionf>;  ///< in two dimensions radians
+
+  AttachmentFrame<kDimension> frame{};
+  Vector goal = Vector::Zero();
+  Turn turn = no_turn(), goal_turn = no_turn();
+  float seconds = 0;   ///< until it arrives
+  bool moves = false;  ///< it has not arrived yet
+  // Within a step, at its end:
+  Turn end_turn = no_turn();
+  float end_seconds = 0;
+
+  /// @throws std::invalid_argument  as check_seconds_of_move()
+  void move(const Vector& to, const Turn& to_turn, float within) {
+    check_seconds_of_move(within);
+    goal = to;
+    goal_turn = to_turn;
+    seconds = within;
+    moves = true;
+  }
+  /// Sets where it is at the end of a step. It moves evenly, and in the last step exactly to the goal.
+  void begin(float step) {
+    if (!moves) return;
+    const bool arrives = !(step < seconds);
+    const float share = arrives ? 1.0f : step / seconds;
+    frame.end_position = arrives ? goal : Vector(frame.position + share * (goal - frame.position));
+    end_turn = turned_towards(turn, goal_turn, share);
+    if constexpr (kDimension == 2)
+      frame.end_rotation = rotation_matrix(end_turn);
+    else
+      frame.end_rotation = end_turn.toRotationMatrix();
+    end_seconds = seconds - step;
+  }
+  /// Ends a step that has begun.
+  void end() {
+    if (!moves) return;
+    frame.position = frame.end_position;
+    frame.rotation = frame.end_rotation;
+    turn = end_turn;
+    seconds = end_seconds;
+    moves = seconds > 0;
+  }
+
+ private:
+  static Turn no_turn() {
+    if constexpr (kDimension == 2)
+      return 0;
+    else
+      return Turn::Identity();
+  }
+};
 
 /// A piece of a broken body, and which particle of the whole each of its particles was.
 template <class Body>
@@ -120,7 +179,7 @@ class PiecesOfPatches {
 };
 
 /// All attachments, in the order in which they were made.
-/// @tparam Link  has `id`, `rows`, and soft bodies `a` and `b`
+/// @tparam Link  has `id`, `rows`, soft bodies `a` and `b`, and `rigid`: what it is attached to, `b` or `rigid`; both null: the world
 template <class Link>
 class AttachmentLinks {
  public:
@@ -145,6 +204,14 @@ class AttachmentLinks {
     if (Link* const link = find(id)) return *link;
     throw std::invalid_argument("there is no attachment " + std::to_string(static_cast<std::uint32_t>(id)));
   }
+  /// @throws std::invalid_argument  there is no link with that number, or it is not to the world
+  Link& to_world(AttachmentId id) const {
+    Link& link = at(id);
+    if (link.b != nullptr || link.rigid != nullptr)
+      throw std::invalid_argument(
+          "an attachment to another body cannot be moved; only those to the world can");
+    return link;
+  }
   /// Removes the links for which `which(link)` is true; calls it once for each. Allocates nothing if there are none. @return the removed
   /// links, in order
   template <class Which>
@@ -158,8 +225,58 @@ class AttachmentLinks {
     return taken;
   }
 
+  // The same, for links that end without the program's doing: take_ended() tells of them. Calls `after(link)` for each.
+
+  /// @return whether there are any
+  template <class Which, class After>
+  bool end_those(EndedAttachment::Reason reason, const Which& which, const After& after) {
+    const Pointers gone = take(which);
+    for (const auto& link : gone) {
+      ended_.push_back({link->id, reason});
+      after(*link);
+    }
+    return !gone.empty();
+  }
+  /// Those that broke.
+  template <class After>
+  bool end_broken(const After& after) {
+    return end_those(
+        EndedAttachment::Reason::kBroken, [](const Link& link) { return link.rows.broke(); }, after);
+  }
+  /// Those to a rigid body that has gone, by `is_there(link)`. It does not look at such bodies again.
+  template <class IsThere, class After>
+  bool end_gone(const IsThere& is_there, const After& after) {
+    const auto is_gone = [&](Link& link) {
+      if (link.rigid == nullptr || is_there(link)) return false;
+      link.rigid = nullptr;
+      return true;
+    };
+    return end_those(EndedAttachment::Reason::kGone, is_gone, after);
+  }
+  /// Those of a soft body.
+  template <class Body, class After>
+  bool end_those_of(const Body& body, const After& after) {
+    return end_those(
+        EndedAttachment::Reason::kGone, [&](const Link& link) { return link.a == &body || link.b == &body; },
+        after);
+  }
+  /// Those of a broken body that no piece takes over; moves the others. The parameters are those of PiecesOfPatches.
+  template <class Body, class After>
+  bool follow_pieces(const Body& body, std::span<const PieceOfBody<Body>> pieces,
+                     std::span<const std::vector<std::uint32_t>> vanished, const After& after) {
+    if (empty()) return false;
+    const PiecesOfPatches<Body> of_patches(body, pieces, vanished);
+    const bool any_gone = end_those(
+        EndedAttachment::Reason::kGone, [&](const Link& link) { return of_patches.is_gone(link); }, after);
+    const bool any_broken = end_those(
+        EndedAttachment::Reason::kBroken, [&](Link& link) { return !of_patches.follow(link); }, after);
+    return any_gone || any_broken;
+  }
+  std::vector<EndedAttachment> take_ended() { return std::exchange(ended_, {}); }
+
  private:
   Pointers links_;
+  std::vector<EndedAttachment> ended_;
   std::uint32_t next_ = 1;  // 0 names none
 };
 

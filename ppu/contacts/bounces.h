@@ -17,7 +17,7 @@
 
 #include "ppu/contacts/contact_body.h"
 #include "ppu/contacts/contact_group.h"
-#include "ppu/surfaces/obstacle.h"
+#include "ppu/surfaces/contact_rigid.h"
 
 namespace softcell::ppu {
 

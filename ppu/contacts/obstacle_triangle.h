@@ -14,6 +14,7 @@
 #include "ppu/surfaces/known_triangles.h"
 #include "ppu/surfaces/obstacle.h"
 #include "ppu/surfaces/triangle_distance.h"
+#include "softcell/base/assert.h"
 
 namespace softcell::ppu {
 
@@ -50,6 +51,7 @@ class ObstacleTriangle {
 
   /// Whether a point is above or below the triangle, or beside it by no more than `most` metres. @pre has_area()
   bool is_over(const Eigen::Vector3f& point, float most) const {
+    SC_ASSERT(has_area(), "a triangle of area {}", face_.area);
     // Most triangles are farther beside the point than above or below it: no need for the nearest point.
     const float farthest = 1.01f * (most + std::abs(height(point)));
     if ((point.array() < box_.low.array() - farthest).any() ||
@@ -62,6 +64,7 @@ class ObstacleTriangle {
   /// Whether a point that is not deep behind the triangle has nothing to do with it, as it is never above or below it. For most triangles
   /// near a point a look at their boxes shows it; false: it may have to do with it. @pre has_area()
   bool passes_beside(const PointWay& way, float spacing) const {
+    SC_ASSERT(has_area(), "a triangle of area {}", face_.area);
     const float most = kNear * spacing;
     const float from = height(way.from), to = height(way.to);
     if (std::abs(from) > kPressedThrough * spacing || !is_exact(most)) return false;

@@ -10,7 +10,7 @@
 #include "contact_solve_job.h"
 #include "ppu/contacts/contact_worker.h"
 #include "ppu/numbers/disjoint_sets.h"
-#include "ppu/surfaces/obstacle.h"
+#include "ppu/surfaces/contact_rigid.h"
 
 namespace softcell::ppu {
 

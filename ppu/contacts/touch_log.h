@@ -6,7 +6,6 @@
 #include <tuple>
 #include <vector>
 
-#include "softcell/base/assert.h"
 #include "softcell/soft_bodies/contact.h"
 #include "softcell/soft_bodies/soft_body.h"
 

@@ -7,6 +7,8 @@
 #include <array>
 #include <utility>
 
+#include "softcell/base/assert.h"
+
 namespace softcell::ppu {
 
 /// Twice the area of the triangle a, b and a line along x, as seen against x: above 0 if the line is left of the way from a to b. The way
@@ -35,6 +37,7 @@ inline int turns_around(const std::array<Eigen::Vector3d, 3>& triangle, double y
 /// The x at which the line meets the triangle's plane. @pre turns_around() it is not 0
 inline double place_in(const std::array<Eigen::Vector3d, 3>& triangle, double y, double z) {
   const Eigen::Vector3d normal = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]);
+  SC_ASSERT(normal.x() != 0, "a line along x at y = {}, z = {} is in a triangle's plane", y, z);
   return triangle[0].x() -
          (normal.y() * (y - triangle[0].y()) + normal.z() * (z - triangle[0].z())) / normal.x();
 }

@@ -149,6 +149,9 @@ FindParts::Selection FindParts::select_cells(const Body& body, std::span<const s
 }
 
 void FindParts::select_particles(Selection& selection) {
+  SC_ASSERT(selection.first_cell + selection.cell_count == cells_.size(),
+            "cells {} to {} of {} are not those of the last selection", selection.first_cell,
+            selection.first_cell + selection.cell_count, cells_.size());
   number_.assign(selection.body.ends.size(), kNone);
   for (const std::uint16_t cell : cells_of(selection)) {
     for (const std::uint16_t particle : selection.body.cells[cell].corner) {
@@ -161,6 +164,9 @@ void FindParts::select_particles(Selection& selection) {
 }
 
 void FindParts::add_rest(Selection& selection, std::size_t most_bytes) {
+  SC_ASSERT(selection.first_cell + selection.cell_count == cells_.size(),
+            "cells {} to {} of {} are not those of the last selection", selection.first_cell,
+            selection.first_cell + selection.cell_count, cells_.size());
   const std::size_t cell_count = selection.cell_count;
   mark_cells(selection);
   for (std::size_t cell = 0; cell < selection.body.cells.size(); ++cell)

@@ -518,6 +518,8 @@ void SpeContacts::solve(const SolveStages& stages) {
 }
 
 void SpeContacts::take(std::uint32_t body, std::span<Vector3f> velocities, std::span<Vector3f> pushes) const {
+  SC_ASSERT(body < places_.size() && places_[body].model != nullptr, "body {} of {} is not stepped by SPEs",
+            body, places_.size());
   const std::size_t count = velocities.size();
   const spu::SolveVelocity* const changes = velocities_.data() + places_[body].velocities;
   const spu::SolveVelocity* const pushed = changes + count + 1;
@@ -531,6 +533,8 @@ void SpeContacts::take(std::uint32_t body, std::span<Vector3f> velocities, std::
 
 void SpeContacts::put(std::uint32_t body, std::span<const Vector3f> velocities,
                       std::span<const Vector3f> pushes) {
+  SC_ASSERT(body < places_.size() && places_[body].model != nullptr, "body {} of {} is not stepped by SPEs",
+            body, places_.size());
   const std::size_t count = velocities.size();
   spu::SolveVelocity* const changes = velocities_.data() + places_[body].velocities;
   const Vector3f* const started = started_.data() + places_[body].particles;

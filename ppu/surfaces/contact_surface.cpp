@@ -101,29 +101,60 @@ void ContactSurface::sample(const TriangleMesh& mesh, const Lattice<3>& lattice)
                    [](const auto& a, const auto& b) { return a.cell < b.cell; });
 }
 
+namespace {
+
+constexpr int kNodesToNext = ContactSurface::kNodesPerEdge - 1;  // nodes from one cell to the next
+constexpr float kNodeStep = 1.0f / kNodesToNext;
+constexpr float kNoDistance = -std::numeric_limits<float>::max();
+
+/// In cells, by the keys of nodes.
+using NodeDistances = std::unordered_map<std::uint64_t, float>;
+
+/// Deeper inside than exact distances reach: counts steps from node to node, layer by layer.
+void count_inwards(NodeDistances& distances, std::vector<Vector3i> unknown) {
+  while (!unknown.empty()) {
+    std::vector<Vector3i> later;
+    std::vector<std::pair<std::uint64_t, float>> found;
+    for (const Vector3i& node : unknown) {
+      float deepest = kNoDistance;
+      for (int d = 0; d < 6; ++d) {
+        const auto neighbour =
+            distances.find(key_of(node + (d < 3 ? 1 : -1) * Vector3i(Vector3i::Unit(d % 3))));
+        if (neighbour != distances.end()) deepest = std::max(deepest, neighbour->second);
+      }
+      if (deepest == kNoDistance)
+        later.push_back(node);
+      else
+        found.emplace_back(key_of(node), std::min(deepest, 0.0f) - kNodeStep);
+    }
+    for (const auto& [key, distance] : found) distances[key] = distance;
+    if (found.empty()) break;  // no triangle is anywhere near
+    unknown = std::move(later);
+  }
+}
+
+}  // namespace
+
 /// @param solid  tells what is inside; null: the nearest triangle decides
 void ContactSurface::measure(const TriangleMesh& mesh, const Lattice<3>& lattice, const Solid* solid) {
   const TriangleGrid triangles(mesh, lattice.spacing);
   const float outwards = volume_of(mesh) < 0 ? -1.0f : 1.0f;  // -1 for a mesh turned inside out
-  constexpr int kPerCell = kNodesPerEdge - 1;                 // nodes from one cell to the next
-  constexpr float kStep = 1.0f / kPerCell;
 
   // Measures each node once, in the order of cells.
-  std::unordered_map<std::uint64_t, float> distances;
+  NodeDistances distances;
   std::vector<Vector3i> unknown;
   const auto for_each_node = [&](std::size_t cell, const auto& work) {
     std::size_t n = 0;
-    for (int z = 0; z <= kPerCell; ++z)
-      for (int y = 0; y <= kPerCell; ++y)
-        for (int x = 0; x <= kPerCell; ++x)
-          work(n++, Vector3i(kPerCell * lattice.cells[cell] + Vector3i(x, y, z)));
+    for (int z = 0; z <= kNodesToNext; ++z)
+      for (int y = 0; y <= kNodesToNext; ++y)
+        for (int x = 0; x <= kNodesToNext; ++x)
+          work(n++, Vector3i(kNodesToNext * lattice.cells[cell] + Vector3i(x, y, z)));
   };
-  constexpr float kUnknown = -std::numeric_limits<float>::max();
   for (std::size_t c = 0; c < lattice.cells.size(); ++c) {
     for_each_node(c, [&](std::size_t, const Vector3i& node) {
-      const auto [entry, is_new] = distances.try_emplace(key_of(node), kUnknown);
+      const auto [entry, is_new] = distances.try_emplace(key_of(node), kNoDistance);
       if (!is_new) return;
-      const Vector3f at = lattice.origin + lattice.spacing * kStep * node.cast<float>();
+      const Vector3f at = lattice.origin + lattice.spacing * kNodeStep * node.cast<float>();
       const float reach = kReach * lattice.spacing;
       float distance = outwards * triangles.signed_distance(at, reach) / lattice.spacing;
       if (solid != nullptr && std::abs(distance) < kReach)
@@ -134,26 +165,7 @@ void ContactSurface::measure(const TriangleMesh& mesh, const Lattice<3>& lattice
         unknown.push_back(node);
     });
   }
-  // Deeper inside than exact distances reach: counts steps from node to node, layer by layer.
-  while (!unknown.empty()) {
-    std::vector<Vector3i> later;
-    std::vector<std::pair<std::uint64_t, float>> found;
-    for (const Vector3i& node : unknown) {
-      float deepest = kUnknown;
-      for (int d = 0; d < 6; ++d) {
-        const auto neighbour =
-            distances.find(key_of(node + (d < 3 ? 1 : -1) * Vector3i(Vector3i::Unit(d % 3))));
-        if (neighbour != distances.end()) deepest = std::max(deepest, neighbour->second);
-      }
-      if (deepest == kUnknown)
-        later.push_back(node);
-      else
-        found.emplace_back(key_of(node), std::min(deepest, 0.0f) - kStep);
-    }
-    for (const auto& [key, distance] : found) distances[key] = distance;
-    if (found.empty()) break;  // no triangle is anywhere near
-    unknown = std::move(later);
-  }
+  count_inwards(distances, std::move(unknown));
   fields_.resize(lattice.cells.size());
   for (std::size_t c = 0; c < lattice.cells.size(); ++c)
     for_each_node(c,

@@ -51,7 +51,8 @@ class EglContext final : public GlContext {
   }
 
   Function function(const char* name) const override {
-    SC_ASSERT(name != nullptr && handle_ != nullptr, "a GL function of context {}", handle_);
+    SC_ASSERT(name != nullptr && get_current_context_() == handle_,
+              "a GL function of context {}; the current one is {}", handle_, get_current_context_());
     return function_(name);
   }
   std::string backend_name() const override { return "EGL"; }
@@ -99,6 +100,8 @@ class EglContext final : public GlContext {
       library_.function<decltype(destroy_context_)>("eglDestroyContext");
   unsigned int (*make_current_)(EglHandle, EglHandle, EglHandle,
                                 EglHandle) = library_.function<decltype(make_current_)>("eglMakeCurrent");
+  EglHandle (*get_current_context_)() =
+      library_.function<decltype(get_current_context_)>("eglGetCurrentContext");
   EglHandle display_ = nullptr;
   EglHandle handle_ = nullptr;
 };

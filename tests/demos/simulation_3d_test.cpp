@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <chrono>
 #include <cstdint>
@@ -21,6 +22,8 @@ namespace softcell::demos {
 void PrintTo(Skin skin, std::ostream* out) { *out << (skin == Skin::kSpe ? "spe" : "gpu"); }
 
 namespace {
+
+using Eigen::Vector3f;
 
 class FrameTimesOf : public testing::TestWithParam<Skin> {};
 
@@ -42,6 +45,23 @@ TEST_P(FrameTimesOf, ThePpuAreTheSumOfItsPartsAndNoMoreThanTheThreadHasUsed) {
         << times.apply_ms << ", contacts " << times.contacts_ms << ", skin " << times.skin_ms;
     EXPECT_LE(times.ppu_ms, used.count()) << "frame " << frame;
   }
+}
+
+/// Rigid bodies are counted after the scene's boxes, of which this one has none.
+TEST(Simulation3d, ARayEndsAtARigidBodyThatIsNotTransparent) {
+  Scene scene = load_scene_3d("pillows");
+  scene.boxes.clear();
+  const Vector3f piano = scene.rigid_bodies[0].position;
+  const Ray ray{.from = piano + Vector3f(0, 3, 0), .along = {0, -1, 0}};
+  const auto seen = Simulation3d(scene, {.spes = 1}).seen_along(ray);
+  ASSERT_TRUE(seen);
+  EXPECT_NEAR(seen->x(), piano.x(), 1e-4f);
+  EXPECT_NEAR(seen->y(), piano.y() + 0.6f, 0.4f);
+
+  scene.rigid_bodies[0].opacity = 0.2f;
+  const auto behind = Simulation3d(scene, {.spes = 1}).seen_along(ray);
+  ASSERT_TRUE(behind);
+  EXPECT_LT(behind->y(), 2) << "the uppermost pillow";
 }
 
 /// 20 bodies of five shapes on each other. Before they sleep, gravity and contacts alone bring them to rest.

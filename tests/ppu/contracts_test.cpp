@@ -53,6 +53,9 @@ TEST(SoftBodyContractsDeathTest, AVelocityIsFinite) {
   constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
   SC_EXPECT_VIOLATES(body.add_velocity({0, kNan, 0}),
                      "add_velocity.*: infinity or NaN is added to the velocities of 8 particles");
+  SC_EXPECT_VIOLATES(
+      body.add_particle_velocity(3, {kInfinity, 0, 0}),
+      "add_particle_velocity.*: infinity or NaN is added to the velocity of particle 3 of 8\n");
   SC_EXPECT_VIOLATES(body.add_angular_velocity({0, 0, kInfinity}),
                      "add_angular_velocity.*: infinity or NaN is added to the velocities of 8 particles");
   SC_EXPECT_VIOLATES(body.add_angular_velocity({kNan, 0, 0}),
@@ -73,6 +76,9 @@ TEST(SoftBodyContractsDeathTest, AParticleHasANumber) {
   const std::vector<std::uint32_t> too_far(8, 8);
   SC_EXPECT_VIOLATES(SoftBody<3>(cube()).inherit_state(body, too_far, {0, 0, 0}),
                      "inherit_state.*: particle 0 of a piece is particle 8 of 8\n");
+  const std::vector<std::uint32_t> all_first(8, 0);
+  SC_EXPECT_VIOLATES(SoftBody<3>(cube()).inherit_state(body, all_first, {0, 0, 0}),
+                     "inherit_state.*: a body of 8 particles that is no piece inherits a state\n");
 }
 
 TEST(SoftBodyContractsDeathTest, TimeGoesForward) {

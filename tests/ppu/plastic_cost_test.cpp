@@ -2,6 +2,7 @@
 // that it is no multiple.)
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cstdio>
@@ -15,7 +16,6 @@
 #include "softcell/soft_bodies/soft_body.h"
 #include "softcell/soft_bodies/soft_body_solver.h"
 #include "softcell/spe_bodies/spe_runtime.h"
-#include "support/median.h"
 #include "support/slow_build.h"
 
 namespace softcell::ppu {
@@ -78,12 +78,14 @@ TEST(PlasticCost, OfABlockOfAThousandParticlesIsLittleMoreThanThatOfAnElasticOne
       both[1].body.set_material(plastic);
       for (int i = 0; i < 60; ++i)
         for (Stepped& one : both) one.step_four_times(shape);
-      const double elastic_us = median(both[0].cost_us), plastic_us = median(both[1].cost_us);
+      const double elastic_us = std::ranges::min(both[0].cost_us),
+                   plastic_us = std::ranges::min(both[1].cost_us);
       std::printf("%s, strain %.2f: elastic %.0f us a step, plastic %.0f: %.2f times; %u flows\n",
                   on_spes ? "SpeSolver" : "PpuSolver", static_cast<double>(strain), elastic_us, plastic_us,
                   plastic_us / elastic_us, both[1].body.rest_revision());
       EXPECT_EQ(both[1].body.rest_revision() > 50, strain > 0.05f);
-      EXPECT_LT(plastic_us, 8 * elastic_us) << "a busy machine, where the whole of a flow falls into a step";
+      // The least of 60: what a busy machine adds is not in it. 1.0 to 1.3 times are measured.
+      EXPECT_LT(plastic_us, 2 * elastic_us);
     }
   }
 }

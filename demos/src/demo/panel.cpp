@@ -154,7 +154,10 @@ void Panel::draw_time(const Demo& demo, WindowInput& input) {
   int substeps = settings.substeps;
   if (slider("time scale", time_scale, 0.05f, 2, "%.2f", true))
     input.change(Action::kTimeScale, 0, time_scale);
-  if (ImGui::SliderInt("substeps", &substeps, 1, 10, "%d", ImGuiSliderFlags_AlwaysClamp))
+  // A scene may have more of them than most need: the way back to these stays open.
+  const auto most = static_cast<int>(number_of(Action::kSubsteps)->high);
+  most_substeps_ = std::clamp(substeps, most_substeps_, most);
+  if (ImGui::SliderInt("substeps", &substeps, 1, most_substeps_, "%d", ImGuiSliderFlags_AlwaysClamp))
     input.change(Action::kSubsteps, 0, static_cast<float>(substeps));
   edits_ = edits_ || ImGui::IsItemActive();
   if (slider("gravity", gravity, 0, 30, "%.1f m/s\xC2\xB2")) input.set_strength_of_gravity(gravity);

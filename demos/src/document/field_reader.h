@@ -18,7 +18,7 @@
 #include <string_view>
 #include <vector>
 
-#include "softcell/render/frame.h"
+#include "softcell/render/colour.h"
 #include "value.h"
 
 namespace softcell::demos {

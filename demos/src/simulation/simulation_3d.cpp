@@ -661,7 +661,7 @@ std::optional<Eigen::Vector3f> Simulation3d::seen_along(const Ray& ray) const {
     if (hit.share >= share) break;
     const auto box =
         static_cast<std::size_t>(std::ranges::find(state_->boxes, hit.body) - state_->boxes.begin());
-    if (box == state_->boxes.size() || state_->scene.boxes[box].opacity >= kOpaque) return hit.position;
+    if (box == state_->boxes.size() || state_->opacity_of(box) >= kOpaque) return hit.position;
   }
   return seen;
 }

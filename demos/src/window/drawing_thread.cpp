@@ -6,8 +6,6 @@
 #include <string_view>
 #include <utility>
 
-#include "softcell/base/assert.h"
-
 namespace softcell::demos {
 namespace {
 

@@ -1,7 +1,5 @@
 #include "pipeline.h"
 
-#include "softcell/base/assert.h"
-
 namespace softcell::ls_sim::interpreter {
 namespace {
 

@@ -20,8 +20,8 @@ class Debugger;
 
 namespace softcell::ls_sim::native {
 
-/// First quadwords of the local store, as spu_kernels/sdk/host/softcell_environment.h declares them. The test
-/// kernel_contract_test.cpp compares the two.
+/// First quadwords of the local store, as spu_kernels/sdk/host/softcell_environment.h declares them. tests/ls_sim/kernel_contract.cpp
+/// compares the two.
 struct Environment {
   std::uint64_t gate = 0;
   std::uint32_t mfc_lsa = 0, mfc_eah = 0, mfc_eal = 0, mfc_size = 0, mfc_tag = 0, mfc_tag_mask = 0;

@@ -160,6 +160,8 @@ class NativeEngine final : public Engine {
   void run_kernel();
   bool serve_request() noexcept;
   std::optional<RunResult> answer();
+  std::optional<RunResult> answer_assist();
+  void tell_of_access();
   std::optional<dma::Fault> mark_job();
   std::optional<dma::Fault> end_job();
   std::span<const std::byte> variables_of_caller() const;
@@ -174,6 +176,7 @@ class NativeEngine final : public Engine {
   std::optional<std::uint32_t> call_of_what_is_no_code() const;
   dma::Fault classify_trap() const;
   dma::Fault cause_of_trap() const;
+  dma::Fault memory_fault(const std::string& where) const;
   std::string describe_damaged_code() const;
   dma::Fault stack_overflow(std::string detail) const;
 
@@ -340,48 +343,28 @@ std::optional<RunResult> NativeEngine::answer() {
   if (auto overflow = check_stack()) return RunResult{0, std::move(overflow)};
   if (context_.interrupted != 0)
     return RunResult{0, fault(dma::Rule::kDeadlineExceeded, "the kernel did not end in time")};
-  if (context_.operation() == Operation::kStop) {
-    RunResult end{context_.value & 0x3FFFu, std::nullopt};
-    if (!end.ended_normally() && channels_->stop(end.stop_code, {})) return std::nullopt;
-    return end;
-  }
-  if (context_.operation() == Operation::kAssist) {
-    const std::uint32_t code = kAssistedCalls | context_.channel();
-    if (code == assisted::kC99Call || code == assisted::kPosixCall) {
-      assisted::AssistedCalls calls(assisted::files_of_process(), local_store_.bytes(),
-                                    assisted::CallerKind::kHost);
-      if (accesses_ != nullptr)
-        calls.set_listener([this](std::uint32_t lsa, std::uint32_t bytes, bool is_store) {
-          accesses_->on_host_access({lsa}, bytes, is_store);
-        });
-      context_.reply = calls.serve(code, context_.value);
+  switch (context_.operation()) {
+    case Operation::kStop: {
+      RunResult end{context_.value & 0x3FFFu, std::nullopt};
+      if (!end.ended_normally() && channels_->stop(end.stop_code, {})) return std::nullopt;
+      return end;
+    }
+    case Operation::kAssist:
+      return answer_assist();
+    case Operation::kHalt:
+      return RunResult{
+          0, fault(dma::Rule::kKernelHalt, "a halt-on-condition instruction found its condition true")};
+    case Operation::kAccess:
+      tell_of_access();
       return std::nullopt;
-    }
-    environment().assist = context_.value;
-    if (channels_->stop(code, {offsetof(native::Environment, assist)})) return std::nullopt;
-    return RunResult{code, std::nullopt, {}};
-  }
-  if (context_.operation() == Operation::kHalt) {
-    return RunResult{
-        0, fault(dma::Rule::kKernelHalt, "a halt-on-condition instruction found its condition true")};
-  }
-  if (context_.operation() == Operation::kAccess) {
-    const auto what = static_cast<Told>(context_.channel());
-    if (accesses_ == nullptr) return std::nullopt;
-    if (what == Told::kHeapBlock || what == Told::kFreedBlock) {
-      accesses_->on_heap_block(requested_access(), what == Told::kFreedBlock);
-    } else {
-      accesses_->on_access(requested_access());
-    }
-    return std::nullopt;
-  }
-  if (context_.operation() == Operation::kJob) {
-    if (auto overflow = mark_job()) return RunResult{0, std::move(overflow)};
-    return std::nullopt;
-  }
-  if (context_.operation() == Operation::kSync) {  // the gate serialises the processor on the way back
-    channels_->sync();
-    return std::nullopt;
+    case Operation::kJob:
+      if (auto overflow = mark_job()) return RunResult{0, std::move(overflow)};
+      return std::nullopt;
+    case Operation::kSync:  // the gate serialises the processor on the way back
+      channels_->sync();
+      return std::nullopt;
+    default:  // of a channel
+      break;
   }
   ChannelReply reply = answer_channel();
   if (reply.fault) {
@@ -392,6 +375,33 @@ std::optional<RunResult> NativeEngine::answer() {
   }
   context_.reply = reply.value;
   return std::nullopt;
+}
+
+/// The host serves calls of the C library itself; others are stops for the PPU side.
+std::optional<RunResult> NativeEngine::answer_assist() {
+  const std::uint32_t code = kAssistedCalls | context_.channel();
+  if (code == assisted::kC99Call || code == assisted::kPosixCall) {
+    assisted::AssistedCalls calls(assisted::files_of_process(), local_store_.bytes(),
+                                  assisted::CallerKind::kHost);
+    if (accesses_ != nullptr)
+      calls.set_listener([this](std::uint32_t lsa, std::uint32_t bytes, bool is_store) {
+        accesses_->on_host_access({lsa}, bytes, is_store);
+      });
+    context_.reply = calls.serve(code, context_.value);
+    return std::nullopt;
+  }
+  environment().assist = context_.value;
+  if (channels_->stop(code, {offsetof(native::Environment, assist)})) return std::nullopt;
+  return RunResult{code, std::nullopt, {}};
+}
+
+void NativeEngine::tell_of_access() {
+  if (accesses_ == nullptr) return;
+  const auto what = static_cast<Told>(context_.channel());
+  if (what == Told::kHeapBlock || what == Told::kFreedBlock)
+    accesses_->on_heap_block(requested_access(), what == Told::kFreedBlock);
+  else
+    accesses_->on_access(requested_access());
 }
 
 /// A job has its own image at the bottom and its stack below its caller's; what it leaves behind is as a
@@ -607,6 +617,11 @@ dma::Fault NativeEngine::cause_of_trap() const {
         dma::Rule::kIllegalInstruction,
         where + " divides an integer by zero, or the smallest integer by -1, whose quotient has no place");
   }
+  return memory_fault(where);
+}
+
+dma::Fault NativeEngine::memory_fault(const std::string& where) const {
+  const native::Trap& trap = context_.trap;
   if (trap.general_protection) {
     return fault(dma::Rule::kOutsideLocalStore, where + " used a pointer that is not a valid address");
   }

@@ -231,6 +231,7 @@ TEST(Conservation, RandomScenesHaveNoEnergyFromNothing) {
   if (kSlowBuild) GTEST_SKIP() << "too slow with sanitizers, which run the other tests of this file";
   const char* const text = std::getenv("SOFTCELL_RANDOM_SCENES");
   const unsigned count = text != nullptr ? static_cast<unsigned>(std::atoi(text)) : 15;
+  ASSERT_GT(count, 0u) << "SOFTCELL_RANDOM_SCENES is '" << text << "'";
   for (unsigned seed = 1; seed <= count; ++seed) RandomScene(seed).expect_sane(seed);
 }
 

@@ -57,6 +57,7 @@ class ProblemState {
 
   /// @param which  1 or 2. @throws std::invalid_argument  it is another number.
   virtual void write_signal(int which, std::uint32_t value) = 0;
+  /// How a signal register takes what is written. @throws as write_signal()
   virtual void set_signal_mode(int which, SignalMode mode) = 0;
 
   /// Issues a proxy DMA command. The queue has 8 slots and waits while it is full. It accepts no lists, and
@@ -66,10 +67,10 @@ class ProblemState {
   virtual std::optional<dma::Fault> issue_proxy(const dma::MfcCommand& command) = 0;
 
   /// The tags of `tag_mask` without a queued proxy command. wait_proxy() completes the commands of all these
-  /// tags first.
+  /// tags first. @return  a bit for each of these tags
   virtual std::uint32_t proxy_status(std::uint32_t tag_mask) = 0;
   virtual std::uint32_t wait_proxy(std::uint32_t tag_mask) = 0;
-  virtual int free_proxy_slots() = 0;
+  virtual int free_proxy_slots() = 0;  ///< 0 to 8
 
   /// Writes to the local store. Write code with this function only: dma/local_store_bytes.h says why.
   /// @throws std::invalid_argument  the range passes the end of the local store.

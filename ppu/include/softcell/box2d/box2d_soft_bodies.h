@@ -165,6 +165,7 @@ class Box2dSoftBodies {
   /// One step of the world and its soft bodies.
   /// @param step  seconds, the same in every step: a body's stiffness depends on it unless its settings have a frequency, and a step much
   ///              shorter or longer than the one before throws bodies up. 0 changes nothing, as in b2World::Step().
+  /// @param velocity_iterations,position_iterations  as b2World::Step() takes them
   /// @throws std::invalid_argument  the step is negative or not finite.
   void step(float step, int velocity_iterations = 8, int position_iterations = 3);
 

@@ -116,6 +116,7 @@ class JobChain {
 
   void clear();  ///< removes all jobs
   /// Adds a job to the present stage. @throws std::length_error  there are most_jobs already.
+  /// @pre job.image comes from JobSystem::load()
   void add(const Job& job);
   /// Ends the present stage, if it has a job.
   void sync();

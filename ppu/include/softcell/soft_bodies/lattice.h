@@ -96,6 +96,7 @@ std::vector<Eigen::Vector2i> cells_from_rows(std::span<const std::string> rows);
 /// Mass of each particle in kg: density (kg/m^3, in two dimensions kg/m^2) times the filled volume (area);
 /// each cell gives equal shares to its corners.
 /// @throws std::invalid_argument  density not positive and finite.
+/// @pre the lattice has one fill and one set of corners for each cell
 template <int kDimension>
 std::vector<float> particle_masses(const Lattice<kDimension>& lattice, float density);
 

@@ -82,7 +82,7 @@ std::vector<Skin2d> make_skin_parts_2d(const Lattice<2>& lattice, float margin, 
 /// Triangles for a picture that is transparent outside of the body: all cells of the lattice, and the cells around it for
 /// which `drawn` returns true. It has no slopes and no outlines. Deterministic.
 /// @param drawn  called with the grid index of the low corner of a cell that is not the lattice's
-/// @pre  the lattice has cells
+/// @pre  the lattice has cells; `drawn` is not empty
 Skin2d make_cover_2d(const Lattice<2>& lattice, const std::function<bool(const Eigen::Vector2i&)>& drawn);
 
 /// The skin of a piece of a broken body (fracture.h): the part of the whole skin in the piece's cells, cut along the cells' edges. The

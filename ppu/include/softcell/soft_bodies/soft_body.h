@@ -98,6 +98,7 @@ class SoftBody {
   /// sprung back so far that this would add energy. Only such steps allocate memory.
   /// @param stretch  by how much distances between particles differ from those of the rest shape, if the solver has measured that. It
   ///                 saves most looks and does not change results. None: not measured
+  /// @pre step, in seconds, is above 0 and finite
   void flow(float step, std::optional<float> stretch = {});
   /// Whether the next flow() looks at the strains.
   bool will_look() const;
@@ -105,9 +106,10 @@ class SoftBody {
 
   // For couplings, after the solver, in each time step.
 
-  /// Slows particles down that are faster than `limit` (m/s).
+  /// Slows particles down that are faster than `limit` (m/s). @pre limit >= 0
   void limit_speed(float limit);
   /// Integrates the inner particles under `gravity` (m/s^2): v += h g, x += h v. The engines' own order.
+  /// @param step  seconds @pre it is above 0 and finite
   void advance_inner(float step, const Vector& gravity);
   /// Moves inner particles that have left the box around the outer ones back to its edge, and removes the
   /// velocity with which they left. Nothing else keeps the inner particles of a crushed body from sinking
@@ -155,7 +157,7 @@ class SoftBody {
   void set_rest_positions(std::span<const Vector> rest);
   /// In m/s, to every particle. @pre it is finite
   void add_velocity(const Vector& dv);
-  /// In m/s. @pre particle < model().particles()
+  /// In m/s. @pre particle < model().particles(); dv is finite
   void add_particle_velocity(std::size_t particle, const Vector& dv);
   /// Adds a rotation about the centre of mass, in rad/s, to every particle's velocity. @pre it is finite
   void add_angular_velocity(const AxialVector& dw);

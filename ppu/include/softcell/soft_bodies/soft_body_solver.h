@@ -20,7 +20,8 @@ class SoftBodySolver {
   virtual ~SoftBodySolver() = default;
 
   /// Reads positions and velocities of all bodies that are awake and begins a time step of `step` seconds.
-  /// @pre no step is under way. @throws std::runtime_error  as the solver says.
+  /// @pre no step is under way; step > 0, finite; no body is null or occurs twice
+  /// @throws std::runtime_error  as the solver says.
   virtual void kick(std::span<SoftBody<kDimension>* const> bodies, float step) = 0;
 
   /// Waits for the step that kick() has begun and changes the bodies' velocities, and the rest shapes of those that yield.

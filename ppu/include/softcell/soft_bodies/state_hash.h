@@ -14,7 +14,7 @@ namespace softcell::ppu {
 std::uint64_t state_hash(const SoftBody<2>& body, std::uint64_t before = 0);
 std::uint64_t state_hash(const SoftBody<3>& body, std::uint64_t before = 0);
 
-/// The hash of several bodies, in order.
+/// The hash of several bodies, in order. @pre none is null
 std::uint64_t state_hash(std::span<const SoftBody<3>* const> bodies);
 
 }  // namespace softcell::ppu

@@ -39,10 +39,12 @@ struct RendererSettings {
   int height = 540;
   int samples = 4;             ///< for multisampling, limited to what the context supports; 1: none
   int shadow_map_size = 1536;  ///< texels per side
-  int occlusion_pixels = 2;    ///< a side, for which ambient occlusion is computed together; 0: not at all
-  bool soft_shadows = true;    ///< with wider edges; without a GPU a lit pixel takes twice the time
+  /// A side of the squares for which ambient occlusion is computed together; 0: not at all. @pre not below 0
+  int occlusion_pixels = 2;
+  bool soft_shadows = true;  ///< with wider edges; without a GPU a lit pixel takes twice the time
   /// Meshes that are small or far away are drawn with fewer triangles, whose vertices have moved by at most this many pixels, mostly along
   /// the surface; in the shadow map by as many texels. 12 is hardly visible. 0: all triangles are drawn.
+  /// @pre not below 0
   float coarse_pixels = 0;
 };
 

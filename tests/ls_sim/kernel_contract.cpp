@@ -1,7 +1,5 @@
-// What the emulator and kernels say to each other by numbers and places is declared on either side, which may not include each other. Here
-// the compiler compares the two.
-
-#include <gtest/gtest.h>
+// What the emulator and kernels say to each other by numbers and places is declared on either side, which may not include each other, and
+// the PPU side of a program for libspe2 has some of it once more. Here the compiler compares them: this file is compiled, and never linked.
 
 #include <cstddef>
 #include <cstdint>
@@ -10,9 +8,12 @@
 #pragma GCC diagnostic ignored "-Wunused-function"
 #include "../../spu_kernels/sdk/checked/report.h"
 #pragma GCC diagnostic pop
+#include "../../ppu/libspe2/include/cbe_mfc.h"
 #include "../../spu_kernels/sdk/library/assist.h"
+#include "../../spu_kernels/sdk/shared/softcell_mfc_constants.h"
 #include "assisted/assisted_calls.h"
 #include "native/kernel_context.h"
+#include "softcell/dma/mfc_command.h"
 #include "softcell_environment.h"
 
 namespace softcell::ls_sim {
@@ -109,7 +110,57 @@ SC_SAME_POSIX_CALL(kFtruncate);
 SC_SAME_POSIX_CALL(kAccess);
 SC_SAME_POSIX_CALL(kNanosleep);
 
-TEST(KernelContract, IsTheSameOnBothSides) { SUCCEED() << "the compiler has compared it"; }
+// cbe_mfc.h has all commands. Of those that a kernel may use, the kernels' header has the same names: the compiler refuses a second
+// definition of a macro that differs from the first.
+#define SC_SAME_OPCODE(name, constant) static_assert(number(dma::MfcOpcode::name) == (constant))
+SC_SAME_OPCODE(put, MFC_PUT_CMD);
+SC_SAME_OPCODE(putb, MFC_PUTB_CMD);
+SC_SAME_OPCODE(putf, MFC_PUTF_CMD);
+SC_SAME_OPCODE(putl, MFC_PUTL_CMD);
+SC_SAME_OPCODE(putlb, MFC_PUTLB_CMD);
+SC_SAME_OPCODE(putlf, MFC_PUTLF_CMD);
+SC_SAME_OPCODE(puts, MFC_PUTS_CMD);
+SC_SAME_OPCODE(putbs, MFC_PUTBS_CMD);
+SC_SAME_OPCODE(putfs, MFC_PUTFS_CMD);
+SC_SAME_OPCODE(putr, MFC_PUTR_CMD);
+SC_SAME_OPCODE(putrb, MFC_PUTRB_CMD);
+SC_SAME_OPCODE(putrf, MFC_PUTRF_CMD);
+SC_SAME_OPCODE(putrl, MFC_PUTRL_CMD);
+SC_SAME_OPCODE(putrlb, MFC_PUTRLB_CMD);
+SC_SAME_OPCODE(putrlf, MFC_PUTRLF_CMD);
+SC_SAME_OPCODE(get, MFC_GET_CMD);
+SC_SAME_OPCODE(getb, MFC_GETB_CMD);
+SC_SAME_OPCODE(getf, MFC_GETF_CMD);
+SC_SAME_OPCODE(getl, MFC_GETL_CMD);
+SC_SAME_OPCODE(getlb, MFC_GETLB_CMD);
+SC_SAME_OPCODE(getlf, MFC_GETLF_CMD);
+SC_SAME_OPCODE(gets, MFC_GETS_CMD);
+SC_SAME_OPCODE(getbs, MFC_GETBS_CMD);
+SC_SAME_OPCODE(getfs, MFC_GETFS_CMD);
+SC_SAME_OPCODE(sdcrt, MFC_SDCRT_CMD);
+SC_SAME_OPCODE(sdcrtst, MFC_SDCRTST_CMD);
+SC_SAME_OPCODE(sdcrz, MFC_SDCRZ_CMD);
+SC_SAME_OPCODE(sdcrst, MFC_SDCRST_CMD);
+SC_SAME_OPCODE(sdcrf, MFC_SDCRF_CMD);
+SC_SAME_OPCODE(sndsig, MFC_SNDSIG_CMD);
+SC_SAME_OPCODE(sndsigb, MFC_SNDSIGB_CMD);
+SC_SAME_OPCODE(sndsigf, MFC_SNDSIGF_CMD);
+SC_SAME_OPCODE(putlluc, MFC_PUTLLUC_CMD);
+SC_SAME_OPCODE(putllc, MFC_PUTLLC_CMD);
+SC_SAME_OPCODE(putqlluc, MFC_PUTQLLUC_CMD);
+SC_SAME_OPCODE(barrier, MFC_BARRIER_CMD);
+SC_SAME_OPCODE(mfceieio, MFC_EIEIO_CMD);
+SC_SAME_OPCODE(mfcsync, MFC_SYNC_CMD);
+SC_SAME_OPCODE(getllar, MFC_GETLLAR_CMD);
+
+constexpr int kCompared = 39;
+constexpr int kOpcodes = 0
+#define SC_MFC_OPCODE(name, code) +1
+#include "softcell/dma/mfc_opcodes.def"
+#undef SC_MFC_OPCODE
+    ;
+static_assert(kOpcodes == kCompared);
+static_assert(dma::kMaxTransferBytes == MFC_MAX_DMA_SIZE);
 
 }  // namespace
 }  // namespace softcell::ls_sim
