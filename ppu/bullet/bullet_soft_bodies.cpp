@@ -267,6 +267,12 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
     }
   }
 
+  /// Wakes what may sleep on the bodies of an attachment that ends or moves.
+  void tell_others_of(AttachmentId id) {
+    for (const SurfaceBody* const body : attachments().bodies_of(id))
+      if (body != nullptr) tell_others(*body);
+  }
+
   /// Wakes rigid bodies that may sleep on a soft body which leaves its place or changes: Bullet does not know that they lie on it.
   void wake_rigid_bodies(const CoupledBody& leaving) {
     if (!leaving.can_be_touched()) return;
@@ -379,9 +385,13 @@ AttachmentId BulletSoftBodies::attach(const SoftBody<3>& body, const Patch<3>& p
                                             settings);
 }
 
-void BulletSoftBodies::detach(AttachmentId id) { impl_->attachments().remove(id); }
+void BulletSoftBodies::detach(AttachmentId id) {
+  impl_->tell_others_of(id);
+  impl_->attachments().remove(id);
+}
 void BulletSoftBodies::move_attachment(AttachmentId id, const Eigen::Vector3f& position,
                                        const Eigen::Quaternionf& rotation, float seconds) {
+  impl_->tell_others_of(id);
   impl_->attachments().move(id, position, rotation, seconds);
 }
 std::optional<AttachmentState<3>> BulletSoftBodies::attachment(AttachmentId id) const {

@@ -81,6 +81,12 @@ AttachmentId SurfaceAttachments::add(Link link) {
   return added.id;
 }
 
+std::array<const SurfaceBody*, 2> SurfaceAttachments::bodies_of(AttachmentId id) {
+  end_gone();
+  const Link& link = links_.at(id);
+  return {link.a, link.b};
+}
+
 void SurfaceAttachments::remove(AttachmentId id) {
   end_gone();
   rouse(links_.at(id));

@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -33,6 +34,9 @@ class SurfaceAttachments {
   /// Attaches to another soft body. @throws as above; it is the same body.
   AttachmentId add(SurfaceBody& body, const Patch<3>& patch, SurfaceBody& other, const Patch<3>& other_patch,
                    const AttachmentSettings<3>& settings);
+  /// The soft bodies of an attachment; the second one is null if there is one only.
+  /// @throws std::invalid_argument  there is no attachment with that number.
+  std::array<const SurfaceBody*, 2> bodies_of(AttachmentId id);
   void remove(AttachmentId id);  ///< @throws std::invalid_argument  there is no attachment with that number.
   /// @throws std::invalid_argument  there is no attachment with that number, or it is not to the world.
   void move(AttachmentId id, const Eigen::Vector3f& position, const Eigen::Quaternionf& rotation,

@@ -97,11 +97,18 @@ double Bounces::Part::share_of(const Eigen::Vector3i& particle) const {
 /// @param time  seconds after the substep's beginning
 Bounces::Whole Bounces::whole_of(const ContactBody& body, const Part& part, double time) {
   const auto& particles = body.lattice().particles;
+  // A body that is held fast is a wall that moves as what holds it does, however its other particles swing.
+  const bool is_wall = is_held_fast(body);
   const auto mass_of = [&](std::size_t p) {
-    return part.share_of(particles[p]) * double{body.model->masses()[p]};
+    const double share =
+        is_wall ? (body.holds(static_cast<std::uint32_t>(p)) ? 1.0 : 0.0) : part.share_of(particles[p]);
+    return share * double{body.model->masses()[p]};
+  };
+  const auto velocity_of = [&](std::size_t p) -> Vector3d {
+    return (is_wall ? body.held_velocities : body.velocities)[p].cast<double>();
   };
   const auto place = [&](std::size_t p) -> Vector3d {
-    return body.positions[p].cast<double>() + time * body.velocities[p].cast<double>();
+    return body.positions[p].cast<double>() + time * velocity_of(p);
   };
   Whole whole;
   double mass = 0;
@@ -109,7 +116,7 @@ Bounces::Whole Bounces::whole_of(const ContactBody& body, const Part& part, doub
     const double own = mass_of(p);
     mass += own;
     whole.centre += own * place(p);
-    whole.velocity += own * body.velocities[p].cast<double>();
+    whole.velocity += own * velocity_of(p);
   }
   whole.centre /= mass;
   whole.velocity /= mass;
@@ -118,14 +125,14 @@ Bounces::Whole Bounces::whole_of(const ContactBody& body, const Part& part, doub
   for (std::size_t p = 0; p < particles.size(); ++p) {
     const double own = mass_of(p);
     const Vector3d r = place(p) - whole.centre;
-    spin += own * r.cross(body.velocities[p].cast<double>());
+    spin += own * r.cross(velocity_of(p));
     inertia += own * (r.squaredNorm() * Matrix3d::Identity() - r * r.transpose());
   }
   // A body that is pressed to a line cannot turn about the line.
   inertia.diagonal().array() += 1e-9 * inertia.trace();
   const Matrix3d inverse = inertia.inverse();
   whole.spin = inverse * spin;
-  if (!body.asleep && !is_held_fast(body)) {
+  if (!body.asleep && !is_wall) {
     whole.inverse_mass = 1 / mass;
     whole.inverse_inertia = inverse;
   }

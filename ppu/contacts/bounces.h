@@ -5,7 +5,7 @@
 // Shape matching carries an impulse from the surface to the rest of a body one substep later, so a restitution of the surface alone is lost
 // inside the body. Bounces therefore change the rigid motion of whole bodies: six numbers each. They are solved before the other contacts,
 // which then find the bodies already on their way back. A sleeping soft body acts as a wall in the substep in which it is hit, and one that
-// attachments hold at more than a line acts as a wall always.
+// attachments hold at more than a line always acts as a wall that moves as what holds it.
 
 #include <Eigen/Core>
 #include <algorithm>

@@ -619,6 +619,54 @@ TEST_P(SolvedBy, AttachmentsHoldFromAMillimetreToAKilometre) {
   }
 }
 
+/// As a whole the strip is held fast, and hit as a wall that moves as fast as its end: a ball of a hundred times its mass left with the
+/// end's speed.
+TEST_P(SolvedBy, AnEndThatSwingsHitsWithItsOwnMass) {
+  for (const float mass : {1.0f, 100.0f}) {
+    SCOPED_TRACE(mass);
+    AttachedWorld w(GetParam(), {0, 0, 0});
+    SoftBodySettings settings = stiff();
+    settings.restitution = 0.9f;
+    SoftBody<3>& strip = w.add(block({1, 0.2f, 0.2f}), settings, {0, 0, 0});
+    w.bodies.attach(strip, Patch<3>::of_particles(
+                               particles_where(strip, [](const Vector3f& p) { return p.x() < -0.45f; })));
+    double energy = 0;
+    for (std::uint32_t i = 0; i < strip.model().particles(); ++i) {
+      const Vector3f velocity(0, 0, strip.position(i).x() > 0 ? 4.0f : 0.0f);
+      strip.add_particle_velocity(i, velocity);
+      energy += 0.5 * double{strip.model().masses()[i]} * double{velocity.squaredNorm()};
+    }
+    btRigidBody& ball =
+        w.add(std::make_unique<btSphereShape>(0.1f), mass * strip.model().mass(), {0.4f, 0, 0.25f});
+    ball.setRestitution(1);
+    float fastest = 0;
+    for (int frame = 0; frame < 60; ++frame) {
+      w.run(1);
+      fastest = std::max(fastest, ball.getLinearVelocity().length());
+    }
+    EXPECT_GT(fastest, 0) << "it is hit";
+    EXPECT_LT(0.5 / double{ball.getInvMass()} * double{fastest} * double{fastest}, energy);
+  }
+}
+
+TEST_P(SolvedBy, WhatSleepsOnAPadWakesWhenThePadIsLetGoOrMoved) {
+  for (const bool let_go : {true, false}) {
+    SCOPED_TRACE(let_go);
+    AttachedWorld w(GetParam());
+    const Table table(w);
+    const btRigidBody& load = w.add(crate(), 3, {0, 1.25f, 0});
+    w.bodies.let_sleep(SleepSettings{.seconds = 0.5f});
+    for (int frame = 0; frame < 600 && (load.isActive() || !table.body.asleep()); ++frame) w.run(1);
+    ASSERT_FALSE(load.isActive());
+    if (let_go)
+      w.bodies.detach(table.weld);
+    else
+      w.bodies.move_attachment(table.weld, Vector3f(0, 0.5f, 0), Eigen::Quaternionf::Identity(), 1);
+    w.run(90);
+    EXPECT_LT(height_of(load), 0.8f);
+  }
+}
+
 /// A spring of a known stiffness gives as Hooke says.
 TEST_P(SolvedBy, ComplianceGives) {
   AttachedWorld w(GetParam());
