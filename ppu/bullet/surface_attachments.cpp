@@ -125,7 +125,9 @@ void SurfaceAttachments::forget(const SurfaceBody& body) {
 
 void SurfaceAttachments::follow_pieces(const SurfaceBody& body, std::span<const Piece> pieces,
                                        std::span<const std::vector<std::uint32_t>> vanished) {
-  if (links_.follow_pieces(body, pieces, vanished, rouse)) find_islands();
+  if (links_.empty()) return;
+  links_.follow_pieces(body, pieces, vanished, rouse);
+  find_islands();  // also for links that have moved to a piece
 }
 
 void SurfaceAttachments::rouse(const Link& link) {

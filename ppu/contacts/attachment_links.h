@@ -262,15 +262,14 @@ class AttachmentLinks {
   }
   /// Those of a broken body that no piece takes over; moves the others. The parameters are those of PiecesOfPatches.
   template <class Body, class After>
-  bool follow_pieces(const Body& body, std::span<const PieceOfBody<Body>> pieces,
+  void follow_pieces(const Body& body, std::span<const PieceOfBody<Body>> pieces,
                      std::span<const std::vector<std::uint32_t>> vanished, const After& after) {
-    if (empty()) return false;
+    if (empty()) return;
     const PiecesOfPatches<Body> of_patches(body, pieces, vanished);
-    const bool any_gone = end_those(
+    end_those(
         EndedAttachment::Reason::kGone, [&](const Link& link) { return of_patches.is_gone(link); }, after);
-    const bool any_broken = end_those(
+    end_those(
         EndedAttachment::Reason::kBroken, [&](Link& link) { return !of_patches.follow(link); }, after);
-    return any_gone || any_broken;
   }
   std::vector<EndedAttachment> take_ended() { return std::exchange(ended_, {}); }
 

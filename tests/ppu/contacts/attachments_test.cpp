@@ -16,6 +16,7 @@
 #include "contact_world.h"
 #include "ppu/contacts/attachments.h"
 #include "softcell/soft_bodies/attachment.h"
+#include "softcell/soft_bodies/fracture.h"
 #include "softcell/soft_bodies/state_hash.h"
 #include "softcell/spe_bodies/spe_runtime.h"
 
@@ -756,6 +757,33 @@ TEST(Attachments, ASleeperFollowsWhatItHangsFromHoweverSlow) {
     w.run(1);
   }
   EXPECT_NEAR(body.centre_of_mass().x(), 0.3f, 0.02f);
+}
+
+/// The smaller part of a cut body is another body than before, and its attachment is that body's.
+TEST(Attachments, APieceThatSleepsFollowsWhatItHangsFrom) {
+  ContactWorld w;
+  w.bodies.let_sleep(SleepSettings{});
+  const SoftBody<3>& body =
+      w.add(make_box({0.6f, 1.2f, 0.6f}, 0.2f), {.cell_size = 0.2f, .damping = 0.3f}, {0, -0.3f, 0});
+  SoftBody<3>& carrier = w.add(make_box({0.6f, 0.6f, 0.6f}, 0.2f), {.cell_size = 0.2f}, {0, 1.2f, 0});
+  const AttachmentId hold = w.bodies.attach(carrier, Patch<3>::of_particles(top_of(carrier)));
+  w.bodies.attach(carrier, Patch<3>::of_surface({0, 0.9f, 0}, 0.5f), body,
+                  Patch<3>::of_surface({0, 0.3f, 0}, 0.5f));
+  const auto pieces = w.bodies.cut(body, Cut::plane({0, -0.101f, 0}, {0, 1, 0}));
+  ASSERT_EQ(pieces.size(), 1u);
+  const SoftBody<3>& piece = *pieces.front();
+  EXPECT_LT(piece.model().mass(), body.model().mass());
+  for (int i = 0; i < 1200 && !piece.asleep(); ++i) {
+    w.run(1);
+    ASSERT_EQ(piece.asleep(), carrier.asleep()) << "frame " << i;
+  }
+  ASSERT_TRUE(piece.asleep());
+  const float before = piece.centre_of_mass().y();
+  w.bodies.detach(hold);
+  w.run(1);
+  EXPECT_FALSE(piece.asleep());
+  w.run(30);
+  EXPECT_LT(piece.centre_of_mass().y(), before - 0.5f) << "both fall";
 }
 
 TEST(Attachments, WhatIsAttachedSleepsAndWakesTogether) {
