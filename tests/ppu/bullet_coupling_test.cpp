@@ -589,6 +589,7 @@ TEST(BulletSoftBodies, ANanIsReported) {
   World world;
   SoftBody<3>& body = world.soft.add(block_model({2, 2, 2}, stiff(0.2f)), {0, 0.05f, 0});
   body.set_velocity(0, {NAN, 0, 0});
+  body.add_velocity({0, 0, 0});  // tells the coupling of the change
   EXPECT_THROW(world.run(0.1f), std::runtime_error);
 }
 
