@@ -94,10 +94,13 @@ double Bounces::Part::share_of(const Eigen::Vector3i& particle) const {
   return std::clamp(2 - double{off.norm()} / double{thickness}, 0.0, 1.0);
 }
 
-/// @param time  seconds after the substep's beginning
-Bounces::Whole Bounces::whole_of(const ContactBody& body, const Part& part, double time) {
+/// @param time    seconds after the substep's beginning
+/// @param gained  m/s, by gravity in the substep
+Bounces::Whole Bounces::whole_of(const ContactBody& body, const Part& part, double time,
+                                 const Vector3d& gained) {
   const auto& particles = body.lattice().particles;
-  // A body that is held fast is a wall that moves as what holds it does, however its other particles swing.
+  // A body that is held fast is a wall that moves as what holds it does, however its other particles swing. Its velocity, as all others, includes the
+  // gravity of the substep.
   const bool is_wall = is_held_fast(body);
   const auto mass_of = [&](std::size_t p) {
     const double share =
@@ -105,7 +108,8 @@ Bounces::Whole Bounces::whole_of(const ContactBody& body, const Part& part, doub
     return share * double{body.model->masses()[p]};
   };
   const auto velocity_of = [&](std::size_t p) -> Vector3d {
-    return (is_wall ? body.held_velocities : body.velocities)[p].cast<double>();
+    return is_wall ? Vector3d(body.held_velocities[p].cast<double>() + gained)
+                   : Vector3d(body.velocities[p].cast<double>());
   };
   const auto place = [&](std::size_t p) -> Vector3d {
     return body.positions[p].cast<double>() + time * velocity_of(p);
@@ -228,7 +232,8 @@ void Bounces::choose(std::span<const ContactBody> bodies, std::span<const Contac
   choose_parts(bodies);
   wholes_.clear();
   for (std::size_t i = 0; i < changed_.size(); ++i)
-    wholes_.push_back(whole_of(bodies[changed_[i]], parts_[i], double{share_[i]} * double{step}));
+    wholes_.push_back(whole_of(bodies[changed_[i]], parts_[i], double{share_[i]} * double{step},
+                               double{step} * settings.gravity.cast<double>()));
   for (const std::uint32_t rigid : rigids_) wholes_.push_back(whole_of(rigids[rigid]));
 
   bounces_.clear();

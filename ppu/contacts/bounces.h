@@ -124,7 +124,8 @@ class Bounces {
     Eigen::Vector3d friction_impulse{0, 0, 0};
   };
 
-  static Whole whole_of(const ContactBody& body, const Part& part, double time);
+  static Whole whole_of(const ContactBody& body, const Part& part, double time,
+                        const Eigen::Vector3d& gained);
   static Whole whole_of(const ContactRigid& rigid);
   /// The least velocity of a against b along the normal after the bounce, m/s; none: the contact needs no change.
   /// @param share  of the substep, until they touch

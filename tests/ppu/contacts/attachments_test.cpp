@@ -604,14 +604,15 @@ TEST_P(SolvedBy, AttachmentsHoldFromAMillimetreToAKilometre) {
     const float cell = scale / 4;
     AttachedWorld w(GetParam(), {0, -9.81f * scale, 0});
     const TriangleMesh mesh = make_box({2 * scale, scale, scale}, cell);
-    SoftBody<3>& left = w.add(mesh, settings_of(cell), {0, 0, 0});
-    SoftBody<3>& right = w.add(mesh, settings_of(cell), {2 * scale, 0, 0});
+    const float x = -4 * scale;  // the other attachments of AttachedWorld are at more than 0
+    SoftBody<3>& left = w.add(mesh, settings_of(cell), {x, 0, 0});
+    SoftBody<3>& right = w.add(mesh, settings_of(cell), {x + 2 * scale, 0, 0});
     const float half = 0.5f * scale;
     btRigidBody& box = w.add(std::make_unique<btBoxShape>(btVector3(half, half, half)), left.model().mass(),
                              {-1.5f * scale, 0, 0});
-    w.bodies.attach(left, Patch<3>::of_surface({-scale, 0, 0}, half), box);
-    w.bodies.attach(left, Patch<3>::of_surface({scale, 0, 0}, half), right,
-                    Patch<3>::of_surface({scale, 0, 0}, half));
+    w.bodies.attach(left, Patch<3>::of_surface({x - scale, 0, 0}, half), box);
+    w.bodies.attach(left, Patch<3>::of_surface({x + scale, 0, 0}, half), right,
+                    Patch<3>::of_surface({x + scale, 0, 0}, half));
     w.run(15);
     const float fallen = 0.5f * 9.81f * scale * 0.25f * 0.25f;
     for (const SoftBody<3>* const body : {&left, &right})
