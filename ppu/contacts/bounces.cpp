@@ -99,8 +99,8 @@ double Bounces::Part::share_of(const Eigen::Vector3i& particle) const {
 Bounces::Whole Bounces::whole_of(const ContactBody& body, const Part& part, double time,
                                  const Vector3d& gained) {
   const auto& particles = body.lattice().particles;
-  // A body that is held fast is a wall that moves as what holds it does, however its other particles swing. Its velocity, as all others, includes the
-  // gravity of the substep.
+  // A body that is held fast is a wall that moves as what holds it does, however its other particles swing. Its velocity includes the
+  // gravity of the substep, as all others do.
   const bool is_wall = is_held_fast(body);
   const auto mass_of = [&](std::size_t p) {
     const double share =
