@@ -81,8 +81,7 @@ AttachmentId SurfaceAttachments::add(Link link) {
   return added.id;
 }
 
-std::array<const SurfaceBody*, 2> SurfaceAttachments::bodies_of(AttachmentId id) {
-  end_gone();
+std::array<const SurfaceBody*, 2> SurfaceAttachments::bodies_of(AttachmentId id) const {
   const Link& link = links_.at(id);
   return {link.a, link.b};
 }

@@ -36,7 +36,7 @@ class SurfaceAttachments {
                    const AttachmentSettings<3>& settings);
   /// The soft bodies of an attachment; the second one is null if there is one only.
   /// @throws std::invalid_argument  there is no attachment with that number.
-  std::array<const SurfaceBody*, 2> bodies_of(AttachmentId id);
+  std::array<const SurfaceBody*, 2> bodies_of(AttachmentId id) const;
   void remove(AttachmentId id);  ///< @throws std::invalid_argument  there is no attachment with that number.
   /// @throws std::invalid_argument  there is no attachment with that number, or it is not to the world.
   void move(AttachmentId id, const Eigen::Vector3f& position, const Eigen::Quaternionf& rotation,

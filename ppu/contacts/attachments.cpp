@@ -58,7 +58,8 @@ void Attachments<kDimension>::begin(std::span<const AttachedBody<kDimension>> bo
   find_those_alone(bodies.size(), rigids.size());
 }
 
-/// Finds attachments that share no side with another one: while attachments are solved, nothing else changes their sides.
+/// Finds attachments that share no side with another one: while attachments are solved, nothing else changes their sides. Also finds bodies
+/// whose attachments contradict each other.
 template <int kDimension>
 void Attachments<kDimension>::find_those_alone(std::size_t bodies, std::size_t rigids) {
   attached_to_.assign(bodies + rigids, 0);
