@@ -10,7 +10,7 @@
 namespace softcell::ppu {
 
 /// Whether the worker can solve contacts that this thread has found.
-bool ContactSolver::can_hand_to_worker(const Group& group) const {
+bool ContactSolver::can_hand_to_worker(const ContactGroup& group) const {
   return !group.by_worker && !group.on_held && group.contacts.size() <= ContactWorker::kMostContacts &&
          worker->holds(group.a) && worker->holds(group.b);
 }
@@ -18,10 +18,10 @@ bool ContactSolver::can_hand_to_worker(const Group& group) const {
 /// Finds the rigid bodies that the worker would move.
 void ContactSolver::find_rigid_sets(std::span<ContactRigid> rigids) {
   rigid_sets_.begin(rigids);
-  for (std::size_t i = pair_groups_; i < group_count_; ++i) {
-    if (!can_hand_to_worker(groups_[i])) continue;
+  for (const ContactGroup& group : groups_.with_rigid()) {
+    if (!can_hand_to_worker(group)) continue;
     std::uint32_t last = RigidSets::kNone;
-    for (const SoftContact& contact : groups_[i].contacts) {
+    for (const SoftContact& contact : group.contacts) {
       if (rigids[contact.rigid].inverse_mass == 0 || contact.rigid == last) continue;
       rigid_sets_.join(contact.rigid, last == RigidSets::kNone ? contact.rigid : last);
       last = contact.rigid;
@@ -35,8 +35,8 @@ void ContactSolver::find_rigid_sets(std::span<ContactRigid> rigids) {
 bool ContactSolver::hand_attachments_to_worker(std::size_t rigids) {
   attach_units_.clear();
   if (!has_attachments()) return false;
-  const bool with_contacts = std::any_of(groups_.begin(), groups_.begin() + std::ptrdiff_t(group_count_),
-                                         [](const Group& group) { return group.by_worker; });
+  const bool with_contacts =
+      std::ranges::any_of(groups_.all(), [](const ContactGroup& group) { return group.by_worker; });
   if (!with_contacts && attachments->solved() < kManyAttachments) return false;
   for (std::size_t i = 0; i < attachments->solved(); ++i) {
     const AttachmentSides sides = attachments->sides(i);
@@ -49,7 +49,7 @@ bool ContactSolver::hand_attachments_to_worker(std::size_t rigids) {
 }
 
 /// Copies contacts to the worker's memory if it can solve them.
-void ContactSolver::hand_to_worker(Group& group, std::span<ContactRigid> rigids, float step) {
+void ContactSolver::hand_to_worker(ContactGroup& group, std::span<ContactRigid> rigids, float step) {
   if (!can_hand_to_worker(group)) return;
   const ContactSides sides{&bodies_[group.a], group.with_rigid ? nullptr : &bodies_[group.b], rigids};
   if (group.with_rigid) {
@@ -80,18 +80,18 @@ void ContactSolver::add_pairs_to(SolveStages& stages) {
     for (std::uint32_t unit = order_.stages()[stage]; unit < order_.stages()[stage + 1]; ++unit) {
       stages.units.push_back(static_cast<std::uint32_t>(stages.groups.size()));
       for (std::uint32_t i = order_.units()[unit]; i < order_.units()[unit + 1]; ++i) {
-        const Group& group = groups_[order_.order()[i]];
+        const ContactGroup& group = groups_[order_.order()[i]];
         if (group.by_worker) stages.groups.push_back(solved_by_worker(group));
       }
     }
   }
 }
 
-SolveGroup ContactSolver::solved_by_worker(const Group& group) const {
+SolveGroup ContactSolver::solved_by_worker(const ContactGroup& group) const {
   SolveGroup solved{.a = group.a, .contacts = group.solved.contacts, .pushes = group.solved.pushes};
   if (!group.with_rigid) solved.b = group.b;
   if (group.rigid_set != RigidSets::kNone) solved.rigids = rigid_sets_.of(group.rigid_set);
-  solved.iterations = static_cast<std::uint32_t>(iterations_of(group));
+  solved.iterations = static_cast<std::uint32_t>(iterations_of(group, settings));
   return solved;
 }
 
@@ -102,9 +102,9 @@ void ContactSolver::add_rigid_sets_to(SolveStages& stages) {
   for (std::uint32_t set = 0; set < rigid_sets_.sets(); ++set) {
     stages.units.push_back(static_cast<std::uint32_t>(stages.groups.size()));
     of_set_.clear();
-    for (std::size_t i = pair_groups_; i < group_count_; ++i)
-      if (groups_[i].rigid_set == set) of_set_.push_back(&groups_[i]);
-    for_each_turn(std::span<Group* const>(of_set_), [&](const Group& group, int iterations) {
+    for (ContactGroup& group : groups_.with_rigid())
+      if (group.rigid_set == set) of_set_.push_back(&group);
+    for_each_turn(of_set_, settings, [&](const ContactGroup& group, int iterations) {
       stages.groups.push_back(solved_by_worker(group));
       stages.groups.back().iterations = static_cast<std::uint32_t>(iterations);
     });
@@ -124,14 +124,15 @@ void ContactSolver::add_attachments_to(SolveStages& stages, bool ends) const {
 void ContactSolver::add_bodies_to(SolveStages& stages, float stiffening) {
   constexpr std::size_t kBodiesInUnit = 12;
   stages.stages.push_back(static_cast<std::uint32_t>(stages.units.size()));
-  std::size_t rigid = pair_groups_, in_unit = 0;
+  const std::span<const ContactGroup> with_rigid = groups_.with_rigid();
+  std::size_t rigid = 0, in_unit = 0;
   for (std::uint32_t i = 0; i < bodies_.size(); ++i) {
     SolveGroup of_body{.a = i, .contacts = {}};
-    while (rigid < group_count_ && groups_[rigid].a < i) ++rigid;
-    if (rigid < group_count_ && groups_[rigid].a == i && groups_[rigid].by_worker &&
-        groups_[rigid].rigid_set == RigidSets::kNone)
-      of_body = solved_by_worker(groups_[rigid]);
-    if (stiffening > 0 && worker->holds(i)) of_body.cells = touched_[i];
+    while (rigid < with_rigid.size() && with_rigid[rigid].a < i) ++rigid;
+    if (rigid < with_rigid.size() && with_rigid[rigid].a == i && with_rigid[rigid].by_worker &&
+        with_rigid[rigid].rigid_set == RigidSets::kNone)
+      of_body = solved_by_worker(with_rigid[rigid]);
+    if (stiffening > 0 && worker->holds(i)) of_body.cells = touched_.of(i);
     of_body.stiffening = stiffening;
     if (of_body.contacts.empty() && of_body.cells.empty()) continue;
     if (in_unit++ % kBodiesInUnit == 0)
@@ -142,10 +143,10 @@ void ContactSolver::add_bodies_to(SolveStages& stages, float stiffening) {
 
 /// Gives the worker what it can solve; the rest goes to here_. @return  whether the worker solves attachments
 bool ContactSolver::share_with_worker(std::span<ContactRigid> rigids, float step) {
-  weigh_rigid_groups(rigids);
+  turns_.weigh(groups_.with_rigid(), bodies_, rigids);
   if (has_attachments()) begin_attachments(rigids, step);
   find_rigid_sets(rigids);
-  for (std::size_t i = 0; i < group_count_; ++i) hand_to_worker(groups_[i], rigids, step);
+  for (ContactGroup& group : groups_.all()) hand_to_worker(group, rigids, step);
   const bool attachments_by_worker = hand_attachments_to_worker(rigids.size());
   bounce(rigids, step);
   if (!bounces_.empty())
@@ -153,13 +154,13 @@ bool ContactSolver::share_with_worker(std::span<ContactRigid> rigids, float step
       if (worker->holds(i)) worker->put(i, bodies_[i].velocities, bodies_[i].pushes);
   rigid_sets_.put();
   for (std::uint32_t i = 0; i < bodies_.size(); ++i)
-    if (is_crushed_[i] && worker->holds(i)) worker->put(i, bodies_[i].velocities, bodies_[i].pushes);
+    if (crushed_.is_crushed(i) && worker->holds(i)) worker->put(i, bodies_[i].velocities, bodies_[i].pushes);
   here_.clear();
   for (const std::uint32_t i : order_.order())
     if (!groups_[i].by_worker) here_.push_back(&groups_[i]);
   add_rigid_groups(rigids);
   prepare_here(rigids);
-  find_touched_cells();
+  touched_.find(bodies_, groups_.all());
   return attachments_by_worker;
 }
 
@@ -171,8 +172,7 @@ void ContactSolver::solve_in_between(std::span<ContactRigid> rigids, float step,
   iterate_here(std::span(here_).subspan(here_that_move_), rigids, step);
   if (stiffening == 0) return;
   for (std::uint32_t i = 0; i < bodies_.size(); ++i) {
-    if (worker->holds(i)) continue;
-    for (const std::uint32_t cell : touched_[i]) stiffen(bodies_[i], cell, stiffening);
+    if (!worker->holds(i)) touched_.stiffen_those_of(i, bodies_[i], stiffening);
   }
 }
 
