@@ -1,5 +1,5 @@
 #pragma once
-// Bodies some of whose cells are crushed: pushes give the cells their volume back (crushed_cells.h), and must not move the body into others.
+// Bodies some of whose cells are crushed: pushes give the cells their volume back (crushed_cells.h), and must not move bodies into others.
 
 #include <Eigen/Core>
 #include <cstddef>
