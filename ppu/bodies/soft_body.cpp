@@ -317,7 +317,7 @@ void SoftBody<kDimension>::set_rest_positions(std::span<const Vector> rest) {
                              std::to_string(model_->lattice().cells.size()) + (bad == 1 ? " is" : " are") +
                              " flat, inside out, or smaller than half of the cell in the model; contacts "
                              "would push back such cells in each step");
-  take_rest(std::move(own));
+  adopt_rest(std::move(own));
 }
 
 template <int kDimension>
@@ -328,7 +328,7 @@ auto SoftBody<kDimension>::rest_of(std::span<const Vector> positions) const -> s
 }
 
 template <int kDimension>
-void SoftBody<kDimension>::take_rest(std::unique_ptr<RestShape> rest) {
+void SoftBody<kDimension>::adopt_rest(std::unique_ptr<RestShape> rest) {
   rest->shape = RestShape::shape_of(*rest->flow, *model_->plan());
   set_rest(std::move(rest));
   ++revision_;
@@ -344,7 +344,7 @@ void SoftBody<kDimension>::flow(float step, std::optional<float> stretch) {
   SC_ASSERT(step > 0 && std::isfinite(step), "a time step of {} s", step);
   if (!settings_.plasticity) return;
   ++steps_since_look_;
-  if (rest_ && steps_since_look_ >= kFlowSteps) take_flow();
+  if (rest_ && steps_since_look_ >= kFlowSteps) read_flow();
   if (steps_since_look_ < kPlasticSteps) return;
   steps_since_look_ = 0;
   if (!rest_) rest_ = std::make_unique<RestShape>(*model_);
@@ -374,7 +374,7 @@ void SoftBody<kDimension>::flow(float step, std::optional<float> stretch) {
 
 /// Updates the constants of shape matching to the rest shape.
 template <int kDimension>
-void SoftBody<kDimension>::take_flow() {
+void SoftBody<kDimension>::read_flow() {
   SC_ASSERT(rest_ != nullptr, "a body of {} particles was never looked at", x_.size());
   if (!rest_->next.valid()) return;
   rest_->wait();
@@ -411,7 +411,7 @@ void SoftBody<kDimension>::inherit_state(const SoftBody& whole, std::span<const 
   if (!whole.has_own_rest()) return;
   std::vector<Vector> rest;
   for (const std::uint32_t particle : particle_of) rest.push_back(whole.own_rest()[particle]);
-  take_rest(rest_of(rest));
+  adopt_rest(rest_of(rest));
 }
 
 template <int kDimension>

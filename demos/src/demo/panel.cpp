@@ -122,8 +122,8 @@ bool Panel::draw_scene(const SceneTitle& scene, bool is_current, float scale) co
   if (!ImGui::IsItemVisible()) return chosen;
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const ImVec2 end{at.x + picture.x, at.y + picture.y};
-  if (const auto place = pictures_.place(scene.name)) {
-    const auto& [left, top, right, bottom] = *place;
+  if (const auto rectangle = pictures_.rectangle(scene.name)) {
+    const auto& [left, top, right, bottom] = *rectangle;
     list.AddImage(render::Overlay::sheet(), at, end, {left, top}, {right, bottom});
   } else {
     list.AddRectFilled(at, end, IM_COL32(40, 48, 58, 255));

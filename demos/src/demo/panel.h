@@ -43,13 +43,13 @@ class Panel {
   bool edits() const { return edits_; }
 
   /// The number of the scene that the user has chosen. Reading it clears the choice.
-  std::optional<std::size_t> take_choice() { return std::exchange(choice_, std::nullopt); }
+  std::optional<std::size_t> poll_choice() { return std::exchange(choice_, std::nullopt); }
 
   /// The scene file that the user has chosen. Reading it clears the choice.
-  std::optional<std::filesystem::path> take_file() { return std::exchange(file_, std::nullopt); }
+  std::optional<std::filesystem::path> poll_file() { return std::exchange(file_, std::nullopt); }
 
   /// The change of the scene that the user has asked for, without its point of the window. Reading it clears the request.
-  std::optional<SceneChange> take_change() { return std::exchange(change_, std::nullopt); }
+  std::optional<SceneChange> poll_change() { return std::exchange(change_, std::nullopt); }
 
  private:
   static constexpr std::size_t kFrames = 180;  // of the graph

@@ -15,7 +15,7 @@ void MouseHand::handle(const SDL_Event& event, const Look& look, std::vector<Inp
       }
       break;
     case SDL_MOUSEBUTTONDOWN:
-      if (event.button.button == SDL_BUTTON_LEFT) take(event.button.x, event.button.y, look, events);
+      if (event.button.button == SDL_BUTTON_LEFT) grab(event.button.x, event.button.y, look, events);
       break;
     case SDL_MOUSEMOTION:
       if (holds_) move_to(event.motion.x, event.motion.y, look, events);
@@ -35,7 +35,7 @@ MouseHand MouseHand::for_hand(std::uint32_t hand) const {
   return other;
 }
 
-bool MouseHand::take(int x, int y, const Look&, std::vector<InputEvent<2>>& events) {
+bool MouseHand::grab(int x, int y, const Look&, std::vector<InputEvent<2>>& events) {
   auto taken = pick_(camera_.point_at(x, y, width_, height_));
   if (!taken) return false;
   taken->hand = hand_;

@@ -37,8 +37,8 @@ class MouseHand {
   MouseHand for_hand(std::uint32_t hand) const;
   Eigen::Vector2i window_size() const { return {width_, height_}; }
   bool holds() const { return holds_; }
-  /// @return whether there is something to take
-  bool take(int x, int y, const Look& look, std::vector<InputEvent<2>>& events);
+  /// @return whether there is something to grab
+  bool grab(int x, int y, const Look& look, std::vector<InputEvent<2>>& events);
   /// @pre holds()
   void move_to(int x, int y, const Look& look, std::vector<InputEvent<2>>& events);
   /// Pins what it holds where it is. @pre holds()

@@ -28,7 +28,7 @@ bool MouseReach::handle(const SDL_Event& event, const Look& look, std::vector<In
       }
       return false;
     case SDL_MOUSEBUTTONDOWN:
-      return event.button.button == SDL_BUTTON_LEFT && take(event.button.x, event.button.y, look, events);
+      return event.button.button == SDL_BUTTON_LEFT && grab(event.button.x, event.button.y, look, events);
     case SDL_MOUSEMOTION:
       if (!depth_) return false;
       move_to(event.motion.x, event.motion.y, look, events);
@@ -53,7 +53,7 @@ MouseReach MouseReach::for_hand(std::uint32_t hand) const {
   return other;
 }
 
-bool MouseReach::take(int x, int y, const Look& look, std::vector<InputEvent<3>>& events) {
+bool MouseReach::grab(int x, int y, const Look& look, std::vector<InputEvent<3>>& events) {
   if (!pick_) return false;
   const render::Camera camera = eye_(look);
   auto taken = pick_(ray_through(camera, x, y, width_, height_));

@@ -38,8 +38,8 @@ class MouseReach {
   MouseReach for_hand(std::uint32_t hand) const;
   Eigen::Vector2i window_size() const { return {width_, height_}; }
   bool holds() const { return depth_.has_value(); }
-  /// @return whether there is something to take
-  bool take(int x, int y, const Look& look, std::vector<InputEvent<3>>& events);
+  /// @return whether there is something to grab
+  bool grab(int x, int y, const Look& look, std::vector<InputEvent<3>>& events);
   /// @pre holds()
   void move_to(int x, int y, const Look& look, std::vector<InputEvent<3>>& events);
   /// @param notches  of the wheel; below 0: nearer  @pre holds()

@@ -106,8 +106,8 @@ Obstacle read_obstacle(const Value& value, std::size_t index, MeshFiles& files) 
   return obstacle;
 }
 
-/// Puts the user's model in place of the body's own mesh.
-void take_place(SoftBodyPlacement& body, const OwnModel& model, float longest_side) {
+/// Replaces the body's own mesh by the user's model.
+void replace_mesh(SoftBodyPlacement& body, const OwnModel& model, float longest_side) {
   const ppu::Bounds<3> box = ppu::bounds(model.mesh);
   SC_ASSERT((box.high - box.low).maxCoeff() > 0 && longest_side > 0, "a model {} long is made {} m long",
             (box.high - box.low).maxCoeff(), longest_side);
@@ -175,7 +175,7 @@ bool read_soft_body(const Value& value, std::size_t index, MeshFiles& files, con
   body.own_materials = replaced || !fields.has("colour");
   body.mesh = read_mesh(fields, files);
   if (replaced) {
-    take_place(body, *model, model->longest_side.value_or(*own_model_side));
+    replace_mesh(body, *model, model->longest_side.value_or(*own_model_side));
     material.settings.cell_size = body.settings.cell_size;
     tessellation = model->tessellation;
   }

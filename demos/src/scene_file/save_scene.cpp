@@ -49,8 +49,8 @@ class SavedScene {
   /// The name of the command line's file in the saved scene.
   std::string own_file() const { return relative(document_.own->file); }
 
-  /// Keeps a file that a body names, which the saved scene must find as well.
-  void keep_file(Table& item, std::string_view field) {
+  /// Rewrites the name of a file that a body names so that the saved scene finds it.
+  void make_file_findable(Table& item, std::string_view field) {
     Value* const value = find_field(item, field);
     if (value == nullptr) return;
     const auto& name = std::get<std::string>(value->data);
@@ -185,7 +185,7 @@ void save_files_of_bodies(const SceneOf& scene, SavedScene& saved, std::string_v
     const float cell_size = scene.soft_bodies[number++].settings.cell_size;
     const Value* const length = is_named ? nullptr : find_field(table, side);
     if (length == nullptr) {
-      for (const std::string_view field : others) saved.keep_file(table, field);
+      for (const std::string_view field : others) saved.make_file_findable(table, field);
       continue;
     }
     is_named = true;
@@ -277,7 +277,7 @@ std::vector<SceneFile> saved_scene(const Scene& scene, const PresentScene<3>& no
   save_files_of_bodies(scene, saved, "own_model_side", "mesh", {"shape", "mesh", "scale", "up", "colour"},
                        {"mesh"});
   if (Array* const obstacles = items_in(root, "obstacle"))
-    for (Value& obstacle : *obstacles) saved.keep_file(std::get<Table>(obstacle.data), "mesh");
+    for (Value& obstacle : *obstacles) saved.make_file_findable(std::get<Table>(obstacle.data), "mesh");
   return saved.files(now.moment, scene.name);
 }
 

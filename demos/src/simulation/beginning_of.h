@@ -39,8 +39,8 @@ inline std::string has_broken(const std::string& scene, const std::string& body)
 /// Moves a body's particles to where the scene begins with them.
 /// @throws std::runtime_error  the state belongs to another body
 template <int Dimension>
-void put(ppu::SoftBody<Dimension>& body, const typename Beginning<Dimension>::SoftBody& state,
-         const std::string& name) {
+void set_beginning(ppu::SoftBody<Dimension>& body, const typename Beginning<Dimension>::SoftBody& state,
+                   const std::string& name) {
   SC_ASSERT(state.positions.size() == state.velocities.size(), "{} positions and {} velocities of body '{}'",
             state.positions.size(), state.velocities.size(), name);
   SC_ASSERT(state.rest.empty() || state.rest.size() == state.positions.size(),
@@ -54,13 +54,13 @@ void put(ppu::SoftBody<Dimension>& body, const typename Beginning<Dimension>::So
 
 /// The same for all soft bodies of a scene, except those added at this moment: they stay where they are placed.
 template <int Dimension, class SceneOf, class Bodies>
-void put_soft_bodies(const SceneOf& scene, Bodies& bodies) {
+void set_beginnings(const SceneOf& scene, Bodies& bodies) {
   const Beginning<Dimension>& begin = *scene.begin;
   if (begin.soft_bodies.size() > scene.soft_bodies.size())
     throw std::runtime_error(fmt::format("the scene {} has {} soft bodies, and its saved state has {}",
                                          scene.name, scene.soft_bodies.size(), begin.soft_bodies.size()));
   for (std::size_t b = 0; b < begin.soft_bodies.size(); ++b)
-    put<Dimension>(bodies[b], begin.soft_bodies[b], scene.soft_bodies[b].name);
+    set_beginning<Dimension>(bodies[b], begin.soft_bodies[b], scene.soft_bodies[b].name);
 }
 
 /// @throws std::runtime_error  the number of rigid bodies in the scene's saved state is not `moving`

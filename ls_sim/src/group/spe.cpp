@@ -29,7 +29,7 @@ Spe::Spe(int number, dma::AddressSpace& memory, const SpeOptions& options, SpeMo
       monitor_(monitor),
       trace_(options.trace == nullptr ? nullptr : &options.trace->spe(number)),
       timer_(options.timing == nullptr ? nullptr : &options.timing->timer(number)),
-      local_store_(memory.place_of_local_store(number)),
+      local_store_(memory.host_address_of_local_store(number)),
       mfc_(local_store_.bytes(), memory, options.schedule, static_cast<std::uint64_t>(number), this),
       engine_(std::make_unique<EngineByImage>(
           local_store_, dma::local_store_ea(number),
