@@ -471,6 +471,8 @@ INSTANTIATE_TEST_SUITE_P(
         BadToml{"[world]\ngravity = inf\n", "bad.toml:2:1: gravity of world is inf; it must be a number"},
         BadToml{"[world]\nsubsteps = 1.5\n",
                 "bad.toml:2:1: substeps of world is 1.5; it must be a whole number"},
+        BadToml{"[world]\nsubsteps = 65\n",
+                "bad.toml:2:1: substeps of world is 65; it must be a whole number from 1 to 64"},
         BadToml{"world = 3\n", "bad.toml:1:1: world must be a table, and is a number"},
         BadToml{"box = 3\n", "bad.toml:1:1: box of a scene is 3; it must be an array"},
         BadToml{"[[box]]\nmass = 1\n", "bad.toml:1:1: box 1 needs the field 'size'"},

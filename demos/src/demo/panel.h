@@ -81,7 +81,6 @@ class Panel {
   std::array<float, 4> area_{};  // left, top, right, bottom
   int body_ = -1;                // the body whose material is shown; -1: all bodies
   int stiffness_by_ = 0;         // alpha, frequency, modulus
-  int most_substeps_ = 10;       // of the slider
   std::array<std::array<float, kParts>, kFrames> milliseconds_{};
   std::size_t next_ = 0;
   std::vector<double> spe_ms_;

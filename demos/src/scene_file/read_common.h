@@ -8,6 +8,7 @@
 #include <string>
 
 #include "document/field_reader.h"
+#include "scene/frame_time.h"
 #include "scene/scene.h"
 #include "scene/scripted_input.h"
 #include "softcell/base/assert.h"
@@ -32,7 +33,6 @@ inline void check_added_particles(std::size_t particles, const Place& place) {
 }
 inline constexpr std::size_t kMaxVerticesOfScene = 2'000'000;
 inline constexpr int kMaxFrames = 1'000'000;
-inline constexpr int kMaxSubsteps = 64;
 inline constexpr double kMaxGravity = 1000;  // m/s^2
 inline constexpr double kMaxMass = 1e6;      // kg
 inline constexpr double kLeastMass = 1e-6;   // kg, if it moves: floats hold inverses of masses and inertias
