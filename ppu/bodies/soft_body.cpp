@@ -34,6 +34,18 @@ Matrix3d matrix_of(const Eigen::Quaternionf& rotation) {
   return rotation.normalized().toRotationMatrix().cast<double>();
 }
 
+/// Checks values that the user sets for all particles. @param one,many  the name of such a value, for messages
+/// @throws std::runtime_error  there are more or fewer values than particles, or one is not finite
+template <class Vector>
+void check_values(std::span<const Vector> values, std::size_t particles, const std::string& one,
+                  const std::string& many) {
+  const std::string body = "a soft body of " + base::counted(particles, "particle") + " was given ";
+  if (values.size() != particles) throw std::runtime_error(body + base::counted(values.size(), one, many));
+  for (std::size_t i = 0; i < particles; ++i)
+    if (!values[i].allFinite())
+      throw std::runtime_error(body + "a " + one + " that is not finite, for particle " + std::to_string(i));
+}
+
 /// Sums over the body in double precision, so that positions far from the origin lose no accuracy.
 template <int kDimension>
 struct Motion {
@@ -306,11 +318,7 @@ auto SoftBody<kDimension>::own_rest() const -> std::span<const Vector> {
 
 template <int kDimension>
 void SoftBody<kDimension>::set_rest_positions(std::span<const Vector> rest) {
-  if (rest.size() != x_.size())
-    throw std::runtime_error("a soft body of " + base::counted(x_.size(), "particle") + " was given " +
-                             base::counted(rest.size(), "position") + " at rest");
-  for (const Vector& position : rest)
-    if (!position.allFinite()) throw std::runtime_error("a soft body's rest shape is not finite");
+  check_values(rest, x_.size(), "position at rest", "positions at rest");
   std::unique_ptr<RestShape> own = rest_of(rest);
   if (const std::size_t bad = own->flow->cells_that_contacts_hold())
     throw std::runtime_error("in a soft body's rest shape " + base::counted(bad, "cell") + " of " +
@@ -495,15 +503,8 @@ void SoftBody<kDimension>::translate(const Vector& by) {
 
 template <int kDimension>
 void SoftBody<kDimension>::set_state(std::span<const Vector> positions, std::span<const Vector> velocities) {
-  if (positions.size() != x_.size() || velocities.size() != x_.size())
-    throw std::runtime_error("a soft body of " + base::counted(x_.size(), "particle") + " was given " +
-                             base::counted(positions.size(), "position") + " and " +
-                             base::counted(velocities.size(), "velocity", "velocities"));
-  for (std::size_t i = 0; i < x_.size(); ++i) {
-    if (!positions[i].allFinite() || !velocities[i].allFinite())
-      throw std::runtime_error("a soft body was given a state whose particle " + std::to_string(i) + " of " +
-                               std::to_string(x_.size()) + " is not finite");
-  }
+  check_values(positions, x_.size(), "position", "positions");
+  check_values(velocities, x_.size(), "velocity", "velocities");
   for (std::size_t i = 0; i < x_.size(); ++i) set_particle(i, positions[i], velocities[i]);
   forget_rotations();
   lost_->forget();
