@@ -146,21 +146,9 @@ struct World {
   }
 
   void attach(const Scene2d& scene) {
-    for (const AttachmentPlacement<2>& placement : scene.attachments) {
-      const ppu::SoftBody<2>& body = soft_bodies[placement.body];
-      const auto patch = ppu::Patch<2>::of_surface(placement.at, placement.radius);
-      describe_refusal(placement.described, [&] {
-        if (placement.other)
-          attachments.push_back(soft_bodies.attach(
-              body, patch, soft_bodies[*placement.other],
-              ppu::Patch<2>::of_surface(placement.other_at, placement.other_radius), placement.settings));
-        else if (placement.rigid)
-          attachments.push_back(
-              soft_bodies.attach(body, patch, *rigid_bodies[*placement.rigid], placement.settings));
-        else
-          attachments.push_back(soft_bodies.attach(body, patch, placement.settings));
-      });
-    }
+    attachments = make_attachments<2>(scene, soft_bodies, [&](const AttachmentPlacement<2>& placement) {
+      return placement.rigid ? rigid_bodies[*placement.rigid] : nullptr;
+    });
   }
 
   /// Puts everything where the scene begins, if that is a moment of a run.

@@ -231,22 +231,10 @@ struct Simulation3d::State {
 
   /// Makes all attachments that the scene states, also those that have broken.
   void attach() {
-    attachments.clear();
-    for (const AttachmentPlacement<3>& placement : scene.attachments) {
-      const ppu::SoftBody<3>& body = soft_bodies[placement.body];
-      const auto patch = ppu::Patch<3>::of_surface(placement.at, placement.radius);
-      describe_refusal(placement.described, [&] {
-        if (placement.other)
-          attachments.push_back(soft_bodies.attach(
-              body, patch, soft_bodies[*placement.other],
-              ppu::Patch<3>::of_surface(placement.other_at, placement.other_radius), placement.settings));
-        else if (const auto rigid = rigid_of(placement))
-          attachments.push_back(
-              soft_bodies.attach(body, patch, world.rigid_body(boxes[*rigid]), placement.settings));
-        else
-          attachments.push_back(soft_bodies.attach(body, patch, placement.settings));
-      });
-    }
+    attachments = make_attachments<3>(scene, soft_bodies, [&](const AttachmentPlacement<3>& placement) {
+      const auto rigid = rigid_of(placement);
+      return rigid ? &world.rigid_body(boxes[*rigid]) : nullptr;
+    });
   }
 
   Eigen::Matrix3f present_tilt() const {
