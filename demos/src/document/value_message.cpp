@@ -21,7 +21,7 @@ enum Tag : char {
 /// Reads what MessageWriter wrote; reads nothing more after something did not fit.
 class MessageReader {
  public:
-  MessageReader(std::string_view bytes, Place place) : rest_(bytes), place_(std::move(place)) {}
+  MessageReader(std::string_view bytes, Location location) : rest_(bytes), location_(std::move(location)) {}
 
   template <class T>
   std::optional<T> read() {
@@ -47,19 +47,19 @@ class MessageReader {
     switch (*tag) {
       case kFlag: {
         const auto flag = read<char>();
-        return flag ? std::optional(Value{*flag != 0, place_}) : std::nullopt;
+        return flag ? std::optional(Value{*flag != 0, location_}) : std::nullopt;
       }
       case kInteger: {
         const auto integer = read<std::int64_t>();
-        return integer ? std::optional(Value{*integer, place_}) : std::nullopt;
+        return integer ? std::optional(Value{*integer, location_}) : std::nullopt;
       }
       case kReal: {
         const auto real = read<double>();
-        return real && std::isfinite(*real) ? std::optional(Value{*real, place_}) : std::nullopt;
+        return real && std::isfinite(*real) ? std::optional(Value{*real, location_}) : std::nullopt;
       }
       case kText: {
         auto text = read_text();
-        return text ? std::optional(Value{std::move(*text), place_}) : std::nullopt;
+        return text ? std::optional(Value{std::move(*text), location_}) : std::nullopt;
       }
       case kArray:
         return read_array(depth);
@@ -71,7 +71,7 @@ class MessageReader {
   }
 
   bool at_end() const { return rest_.empty(); }
-  Place& place() { return place_; }
+  Location& location() { return location_; }
 
  private:
   std::optional<Value> read_array(int depth) {
@@ -83,7 +83,7 @@ class MessageReader {
       if (!item) return std::nullopt;
       array.push_back(std::move(*item));
     }
-    return Value{std::move(array), place_};
+    return Value{std::move(array), location_};
   }
 
   std::optional<Value> read_table(int depth) {
@@ -98,11 +98,11 @@ class MessageReader {
       table.push_back({std::move(*key), std::move(*value)});
     }
     std::sort(table.begin(), table.end(), [](const auto& a, const auto& b) { return a.name < b.name; });
-    return Value{std::move(table), place_};
+    return Value{std::move(table), location_};
   }
 
   std::string_view rest_;
-  Place place_;
+  Location location_;
 };
 
 std::string header(char tag, int line) {
@@ -158,9 +158,9 @@ std::optional<Value> read_message(std::string_view message, const std::shared_pt
   const auto tag = reader.read<char>();
   const auto line = reader.read<std::int32_t>();
   if (!tag || !line) return std::nullopt;
-  reader.place().line = std::max(0, *line);
+  reader.location().line = std::max(0, *line);
   if (*tag == kError) {
-    throw SceneError(reader.place(), std::string(message.substr(sizeof(char) + sizeof(std::int32_t))));
+    throw SceneError(reader.location(), std::string(message.substr(sizeof(char) + sizeof(std::int32_t))));
   }
   if (*tag != kValue) return std::nullopt;
   auto value = reader.read_value(0);

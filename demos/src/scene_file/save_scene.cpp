@@ -77,7 +77,7 @@ class SavedScene {
     set_field(table_in(root_, "begin"), "state", text_value(state.filename().string()));
     std::vector<SceneFile> all{{file_, fmt::format("# The scene {} after {} frames, as softcell saved it.\n",
                                                    printable(scene_name), moment.frames) +
-                                           write_toml({.data = root_, .place = {}})},
+                                           write_toml({.data = root_, .location = {}})},
                                {state, state_to_text(moment)}};
     std::ranges::move(copies_, std::back_inserter(all));
     return all;
@@ -91,14 +91,14 @@ class SavedScene {
   }
 
   std::string relative(const fs::path& file) const {
-    const fs::path place = fs::weakly_canonical(fs::absolute(file));
-    const fs::path way = place.lexically_relative(folder_);
+    const fs::path location = fs::weakly_canonical(fs::absolute(file));
+    const fs::path way = location.lexically_relative(folder_);
     if (way.empty() || *way.begin() == "..")
       throw std::runtime_error(
           fmt::format("the scene cannot be saved as {}: it uses {}, and a scene names files below its own "
                       "folder only; save it "
                       "in {}",
-                      file_.string(), file.string(), place.parent_path().string()));
+                      file_.string(), file.string(), location.parent_path().string()));
     return way.generic_string();
   }
 
