@@ -155,9 +155,7 @@ void Panel::draw_time(const Demo& demo, WindowInput& input) {
   int substeps = settings.substeps;
   if (slider("time scale", time_scale, 0.05f, 2, "%.2f", true))
     input.change(Action::kTimeScale, 0, time_scale);
-  // Logarithmic, because most scenes need few of them.
-  if (ImGui::SliderInt("substeps", &substeps, 1, kMaxSubsteps, "%d",
-                       ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_Logarithmic))
+  if (ImGui::SliderInt("substeps", &substeps, 1, kMaxSubsteps, "%d", ImGuiSliderFlags_AlwaysClamp))
     input.change(Action::kSubsteps, 0, static_cast<float>(substeps));
   edits_ = edits_ || ImGui::IsItemActive();
   if (slider("gravity", gravity, 0, 30, "%.1f m/s\xC2\xB2")) input.set_strength_of_gravity(gravity);
