@@ -93,7 +93,7 @@ RunResult Spe::run(const Run& run) {
   if (job_) result.job = job_->ea;
   end_is_wanted_ = false;
   // Whatever a kernel that failed did to its local store goes with it.
-  if (result.fault || options_.reload_always) resident_ = nullptr;
+  if (result.fault) resident_ = nullptr;
   job_.reset();
   return result;
 }

@@ -41,9 +41,6 @@ struct SpeOptions {
   Clock clock = Clock::kHost;
   Interleaving interleaving = Interleaving::kFree;
   bool measure_stack = false;  ///< scan the stack after each run
-  /// For tests of kernels: loads the image before every run, as when another kernel has run on the SPE in between, so bss starts as zero. A
-  /// kernel that gives other results with it relies on what its last run has left in bss.
-  bool reload_always = false;
   /// Checked images report their findings here; images that are not checked are refused then. Null: nothing is checked. It must outlive the
   /// SPEs.
   Findings* findings = nullptr;
