@@ -79,8 +79,9 @@ macro(softcell_install_component component)
       ${PROJECT_SOURCE_DIR}/ppu/libspe2/include/cbea_map.h ${PROJECT_SOURCE_DIR}/ppu/libspe2/include/cbe_mfc.h
       ${PROJECT_SOURCE_DIR}/ppu/libspe2/include/ppu_intrinsics.h
       ${PROJECT_SOURCE_DIR}/ppu/libspe2/include/libmisc.h ${PROJECT_SOURCE_DIR}/ppu/libspe2/include/malloc_align.h
-      ${PROJECT_SOURCE_DIR}/ppu/libspe2/include/free_align.h ${PROJECT_SOURCE_DIR}/ppu/libspe2/include/libsync.h TYPE INCLUDE COMPONENT development)
-    install(DIRECTORY ${PROJECT_SOURCE_DIR}/ppu/libspe2/inlined/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/softcell/libspe2 COMPONENT development)
+      ${PROJECT_SOURCE_DIR}/ppu/libspe2/include/free_align.h ${PROJECT_SOURCE_DIR}/ppu/libspe2/include/libsync.h
+      ${PROJECT_SOURCE_DIR}/spu_kernels/sdk/shared/softcell_sync.h TYPE INCLUDE COMPONENT development)
+    install(DIRECTORY ${PROJECT_BINARY_DIR}/ppu/libspe2/inlined/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/softcell/libspe2 COMPONENT development)
     softcell_install_pkg_config(libspe2 "the SPE Runtime Management Library"
       CFLAGS -I\${prefix}/${CMAKE_INSTALL_INCLUDEDIR}/softcell/libspe2 LIBS -Wl,-rpath,\${libdir} -lspe2)
   elseif("${component}" STREQUAL "render")

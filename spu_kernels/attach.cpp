@@ -10,8 +10,8 @@
 //   entries     in, out    AttachEntry, 48 bytes        <= 1280  16
 //   rigids      in, out    of SolveRigid, 80 bytes      <= 64    16
 //
-// Of the bodies only runs of particles with attached ones are here: velocities beside each other, pushes likewise. Links that have a body
-// in common hear each other in each iteration, without main memory in between.
+// The local store holds only those runs of a body's particles that have attached particles: their velocities and their pushes. Links that
+// share a body see each other's changes in each iteration, without transfers in between.
 //
 // Budget: 224 KB. Velocities and pushes 64 KB, points 36 KB, entries 60 KB, links and rows 12 KB each, runs and rigid bodies 4 KB each;
 // the rest for code and 2 KB of stack.
@@ -60,7 +60,7 @@ bool fits(const AttachJob& job) {
          job.entry_count <= kAttachMaxEntries && job.rigid_count <= kAttachMaxRigids;
 }
 
-/// move(slots, address, bytes) for the velocities of all runs, and their pushes if there are some.
+/// Calls move(slots, address, bytes) for the velocities of each run, and for its pushes if the job has pushes.
 template <typename Move>
 __attribute__((always_inline)) inline void each_run(const Move& move) {
   uint32_t slot = 0;
@@ -72,7 +72,7 @@ __attribute__((always_inline)) inline void each_run(const Move& move) {
   }
 }
 
-/// @return  false: there are too many slots
+/// Fetches everything that the job names. @return  false: there are too many slots
 bool fetch() {
   const AttachJob& job = ls.job;
   get_array(ls.runs, job.runs_ea, job.run_count);
@@ -106,10 +106,11 @@ void send() {
   wait_for_tag(kTagOut);
 }
 
-/// work(parts) for each link.
+/// Calls work(parts) for each link.
 template <typename Work>
 __attribute__((always_inline)) inline void each_link(const Work& work) {
-  LinkParts parts;  // not from a list: compilers keep lists of addresses, which an image must not have
+  // Without initialisers: compilers store lists of addresses as data, which an image must not have.
+  LinkParts parts;
   parts.link = ls.links;
   parts.points = ls.points;
   parts.rows = ls.rows;
@@ -123,9 +124,9 @@ __attribute__((always_inline)) inline void each_link(const Work& work) {
   }
 }
 
-/// Until nothing changes any more.
+/// Iterates until the error hardly changes any more.
 void iterate(const Held& held) {
-  constexpr float kDone = 0x1.5798eep-27f;  // 1e-8, of the first iteration's error, squared
+  constexpr float kDone = 0x1.5798eep-27f;  // 1e-8: share of the squared error of the first iteration
   float first = 0.0f;
   for (uint32_t i = 0; i < ls.job.iterations; ++i) {
     float error = 0.0f;

@@ -8,8 +8,8 @@
 
 namespace softcell::spu {
 
-/// Particles of a body beside each other, of which some are attached. They get slots in the order of runs. Velocities are as for
-/// contact_solve: changes in this step, times the root of the mass.
+/// Adjacent particles of a body, some of which are attached. The kernel numbers the particles of all runs, in the order of runs: these
+/// numbers are slots. Velocities are as for contact_solve: changes in this step, times the root of the mass.
 struct alignas(16) AttachRun {
   uint64_t velocities_ea;  ///< count SolveVelocity
   uint32_t pushes;         ///< bytes from there to the pushes of the same particles
@@ -19,42 +19,43 @@ static_assert(sizeof(AttachRun) == 16, "a quadword");
 
 /// A rigid body that impulses move.
 struct alignas(16) AttachRigid {
-  uint64_t rigid_ea;  ///< a SolveRigid that is free, a multiple of 16
+  uint64_t rigid_ea;  ///< a SolveRigid with held = 0, a multiple of 16
   uint32_t pad[2];
 };
 static_assert(sizeof(AttachRigid) == 16, "a quadword");
 
-/// What an attachment does, and which records it has: the next ones in the job's arrays.
+/// The kinds of attachments. Each attachment has the next records of the job's arrays.
 enum AttachKind : uint32_t {
-  /// Holds each particle of a patch: points. All are solved at once, with their rigid body.
+  /// Holds each particle of a patch. Its records are points, which are solved at once, together with their rigid body.
   kAttachPoints = 0,
-  /// Holds places that particles have in common: up to four rows, solved at once; nothing moves a rigid body.
+  /// Holds places that are weighted means of particles. Its records are up to four rows, which are solved at once. No rigid body moves.
   kAttachPlaces = 1,
-  kAttachHinge = 2,  ///< holds places at a rigid body that moves: rows, solved one after the other
-  kAttachRope = 3    ///< holds a place within a distance: one row
+  /// Holds places at a rigid body that moves. Its records are rows, which are solved one after the other.
+  kAttachHinge = 2,
+  kAttachRope = 3  ///< holds a place within a distance; its record is one row
 };
 
-/// The square matrices of up to four rows are columns.
+/// An attachment. The square matrices, of up to four rows, are stored by columns.
 struct alignas(16) AttachLink {
   uint32_t kind;        ///< AttachKind
-  uint32_t points;      ///< of kAttachPoints
-  uint32_t rows;        ///< of the other kinds, 1 to 4
-  uint32_t entries[2];  ///< likewise: of the first body, and then of the second one
-  uint32_t rigid;       ///< which of the job's; kAttachNoRigid: none that moves
+  uint32_t points;      ///< number of points of kAttachPoints, else 0
+  uint32_t rows;        ///< number of rows of the other kinds, 1 to 4
+  uint32_t entries[2];  ///< number of entries of the other kinds: of the first body, then of the second
+  uint32_t rigid;       ///< index of the rigid body in the job; kAttachNoRigid: there is none that moves
   uint32_t pushes;      ///< not 0: errors of position become pushes
-  uint32_t breaks;      ///< not 0: it breaks at most_impulse
-  float softness;       ///< 1/kg: compliance over the step's square; 0: it is rigid
+  uint32_t breaks;      ///< not 0: the attachment breaks at most_impulse
+  float softness;       ///< 1/kg: compliance over the square of the step; 0: the attachment is rigid
   float most_impulse;   ///< kg m/s
   float most_push[2];   ///< m/s, of a particle of each body
-  /// kAttachPoints with a rigid body, of its mass and those of points together: the sum of mass times arm, the inverse of the sum of
-  /// masses, and the inverse of what is left of the inertia.
+  /// For kAttachPoints with a rigid body, over the points and the body: the sum of mass times arm, the inverse of the sum of masses, and
+  /// the inverse of the inertia about their common centre of mass.
   float arms[3], inverse_sum;
   float inverse_inertia[3][4];
   float inverse[4][4];  ///< kg, row i, column j: impulse at place i for each m/s of error at place j
   float inverse_of_pushes[4][4];
-  uint32_t broke;  ///< changed: not 0: it would have carried more in the last iteration
-  uint32_t
-      once;  ///< not 0: the kernel solves it in the first iteration only, as no other link changes its sides
+  uint32_t broke;  ///< changed: not 0 if the impulse was above most_impulse in the last iteration
+  /// Not 0: no other link changes the bodies of this one, so the kernel solves it only in the first iteration.
+  uint32_t once;
   uint32_t pad[2];
 };
 static_assert(sizeof(AttachLink) == 256, "sixteen quadwords");
@@ -63,23 +64,23 @@ constexpr uint32_t kAttachNoRigid = 0xFFFFFFFFu;
 /// A particle that is held.
 struct alignas(16) AttachPoint {
   float carried[3];  ///< m/s: the velocity that holds it, minus its own before anything has changed
-  float mass;        ///< kg: what an impulse of 1 kg m/s moves by 1 m/s, softness included
+  float mass;        ///< kg: the mass that an impulse of 1 kg m/s moves by 1 m/s, softness included
   float error[3];    ///< m/s: of position, over the step
   float push_mass;   ///< kg
   float arm[3];      ///< metres, from the rigid body's centre
   float weight;      ///< 1/sqrt(kg): the root of its inverse mass
   float impulse[3];  ///< changed: kg m/s
   uint32_t slot;
-  float pushed[3];  ///< changed: sqrt(kg) m/s, what these points have pushed it
+  float pushed[3];  ///< changed: sqrt(kg) m/s: the sum of this attachment's pushes of the particle
   float pad;
-  float missing[4];  ///< the kernel's own
+  float missing[4];  ///< only for the kernel
 };
 static_assert(sizeof(AttachPoint) == 96, "six quadwords");
 
 /// A place that is held.
 struct alignas(16) AttachRow {
   float carried[3];     ///< as of a point
-  float most;           ///< m/s along the rope, of a against b
+  float most;           ///< m/s: limit of the velocity of a against b along the rope
   float error[3];       ///< as of a point
   float push_mass;      ///< kg
   float arm[3];         ///< as of a point
@@ -92,7 +93,7 @@ struct alignas(16) AttachRow {
 };
 static_assert(sizeof(AttachRow) == 128, "eight quadwords");
 
-/// A particle that has a share of places.
+/// A particle from which places are computed.
 struct alignas(16) AttachEntry {
   float weight[4];  ///< 1/sqrt(kg): its share of each row's place times the root of its inverse mass
   float pushed[3];  ///< changed: as of a point
@@ -102,10 +103,10 @@ struct alignas(16) AttachEntry {
 };
 static_assert(sizeof(AttachEntry) == 48, "three quadwords");
 
-/// Attachments that the kernel solves in their order, over and over, up to `iterations` times. They may be independent of each other. No
-/// two jobs that run at the same time may share a rigid body, or a soft one that is not asleep.
+/// The job's descriptor, one line in main memory: attachments, which the kernel solves in their order, up to `iterations` times. They may
+/// be independent of each other. Two jobs that run at the same time must not share a rigid body, or a soft body that is awake.
 struct alignas(128) AttachJob {
-  uint64_t runs_ea;     ///< run_count AttachRun; this and the next ones are multiples of 16
+  uint64_t runs_ea;     ///< run_count AttachRun; all these addresses are multiples of 16
   uint64_t links_ea;    ///< link_count AttachLink
   uint64_t points_ea;   ///< point_count AttachPoint
   uint64_t rows_ea;     ///< row_count AttachRow
@@ -113,9 +114,9 @@ struct alignas(128) AttachJob {
   uint64_t rigids_ea;   ///< rigid_count AttachRigid
   uint32_t run_count, link_count, point_count, row_count, entry_count;
   uint32_t rigid_count;
-  uint32_t iterations;  ///< at most so many over all links
+  uint32_t iterations;  ///< the most iterations over all links
   uint32_t pushes;      ///< 0: no link pushes, and pushes are not fetched
-  uint32_t ends;        ///< not 0: the last job of a step, in which pushes are held below what links allow
+  uint32_t ends;  ///< not 0: this is the last job of a step; it limits pushes to the most_push of their links
   uint32_t pad[11];
 };
 static_assert(sizeof(AttachJob) == 128, "one line");

@@ -1,4 +1,4 @@
-// contact_find: where soft bodies would enter each other, or themselves, in the coming step.  [FL01], [MZS+11]
+// contact_find: finds where soft bodies would enter each other, or themselves, in the coming step.  [FL01], [MZS+11]
 //
 //   array     direction  element                     count             alignment
 //   job       in         FindJob, 128 bytes          1                 128
@@ -12,12 +12,12 @@
 //   contacts  out        SolveContact, 176 bytes     <= 256 of a task  16, those of a job beside each other
 //   results   out        FindResult, 16 bytes        1 of a task       16
 //
-// Cells of the two bodies are held against each other by their boxes, four at a time; then points, four at a time, against
-// parallelepipeds and a plane below the distance field. What is near by these bounds widened by a margin is a candidate, which serves
-// for the next steps, too. What is near without the margin is looked for in the cell by Newton's iteration, four points at a time. Few
-// points come so far. Where candidates are known from a step before, the search begins with them.
+// The kernel compares boxes of the two bodies' cells, four at a time; then points, four at a time, with parallelepipeds around the cells
+// and a plane below the distance field. Points that are near by these bounds, widened by a margin, are candidates, which can be used again
+// in the next steps. For points that are near without the margin, the kernel finds the place in the cell by Newton's iteration, four points
+// at a time; these are few. If candidates are known from an earlier step, the search begins with them.
 //
-// Contacts do not depend on the margin: a point that is in a cell is its candidate with any.
+// Contacts do not depend on the margin: with any margin, a point in a cell is a candidate of that cell.
 //
 // Budget: 244 KB. 148 KB of bodies and their models, 11 KB of contacts, 44 KB of cells that are near, their bounds and candidates;
 // the rest for code and 6.5 KB of stack.
@@ -54,7 +54,7 @@ bool find_anew(const BodyInStore& a, const BodyInStore& b, const FindTask& task,
     const Sides itself(a, a, false);
     return Direction(itself, near_a, near_a, margin, contacts, candidates).find();
   }
-  // Between two planes across the line between their middles: only there the bodies meet.
+  // The bodies can only meet between two planes across the line between their middles.
   const vec_float4 direction = only_xyz(spu_sub(*reinterpret_cast<const vec_float4*>(task.b.middle),
                                                 *reinterpret_cast<const vec_float4*>(task.a.middle)));
   const Reach reach_a = widened(reach_along(a, direction, ls.along[0]), direction, margin);
@@ -113,7 +113,7 @@ bool do_task(const FindTask& task) {
   const uint32_t known = task.candidate_count;
   if (known != kFindUnknown && known != 0) {
     if (known > kFindMaxCandidates) return false;
-    wait_for_all();  // those of the task before are gone
+    wait_for_all();  // until the contacts of the task before are stored
     get_large(ls.candidates, task.candidates_ea, bytes_of_candidates(known), kTagIn);
     ls.under_way |= 1u << kTagIn;
   }
@@ -124,7 +124,7 @@ bool do_task(const FindTask& task) {
   const uint32_t model_b = state_a + find_state_bytes(task.a);
   const uint32_t state_b = model_b + (one_model ? 0 : find_model_bytes(task.b));
   if (itself) {
-    ls.model[1].ea = ls.state[1].ea = 0;  // a may lie where they were
+    ls.model[1].ea = ls.state[1].ea = 0;  // a may have overwritten them
   } else {
     if (one_model)
       ls.model[1].ea = 0;
@@ -132,7 +132,7 @@ bool do_task(const FindTask& task) {
       fetch_model(ls.model[1], model_b, task.b);
     fetch_state(ls.state[1], state_b, task.b);
   }
-  wait_for_all();  // the contacts of the task before are gone, too
+  wait_for_all();  // also until the contacts of the task before are stored
   const BodyInStore a = body_in_store(0, state_a, task.a);
   const BodyInStore b = itself ? a : body_in_store(one_model ? 0 : model_b, state_b, task.b);
   const TaskTerms terms = {task.step, task.inverse_step, task.friction, task.a.spacing};
@@ -156,7 +156,8 @@ bool do_task(const FindTask& task) {
 /// argp: effective address of a FindJob. Returns a FindStatus.
 int main(uint64_t, uint64_t argp, uint64_t) {
   using namespace softcell::spu;
-  ls.model[0].ea = ls.model[1].ea = ls.state[0].ea = ls.state[1].ea = 0;  // nothing is left of another job
+  // Nothing of an earlier job is there.
+  ls.model[0].ea = ls.model[1].ea = ls.state[0].ea = ls.state[1].ea = 0;
   ls.under_way = 0;
   mfc_get(&ls.job, argp, sizeof(FindJob), kTagTask, 0, 0);
   wait_for_tag(kTagTask);

@@ -31,18 +31,17 @@ struct alignas(16) FindGroup {
 static_assert(sizeof(FindGroup) == 64, "four quadwords");
 constexpr float kFindNoPoint = 0x1.93e594p+99f;  // 1e30
 
-/// The boxes of four cells of a body, around the step's end. Those of the last group that are no cells repeat
-/// the last cell.
+/// The boxes of four cells of a body, at the step's end. The last group is filled up with copies of the last cell.
 struct alignas(16) FindBoxes {
   float low_x[4], low_y[4], low_z[4];
   float high_x[4], high_y[4], high_z[4];
 };
 
-/// A particle: where it is, and the root of its inverse mass; 0 for one that nothing moves.
+/// The position of a particle at the step's beginning, and the root of its inverse mass, which is 0 if nothing moves it.
 struct alignas(16) FindBegin {
   float x, y, z, root;
 };
-/// Where it would be at the end of the step, without contacts.
+/// The position of a particle at the end of the step if there were no contacts.
 struct alignas(16) FindEnd {
   float x, y, z, zero;
 };
@@ -61,25 +60,24 @@ static_assert(sizeof(FindBody) == 64, "half a line");
 
 /// Up to four groups of points of a cell, and a cell of the other body that is near them.
 struct FindCandidate {
-  uint16_t cell;       ///< whose points they are
-  uint16_t other;      ///< the other body's
-  uint16_t first;      ///< group of the four
-  uint16_t of_groups;  ///< bit i: group first + i; kFindOfB: `cell` is b's, and `other` a's
+  uint16_t cell;       ///< the cell that has the points
+  uint16_t other;      ///< the cell of the other body
+  uint16_t first;      ///< number of the first of four groups
+  uint16_t of_groups;  ///< bit i: group first + i is near; kFindOfB: `cell` belongs to b, and `other` to a
 };
 static_assert(sizeof(FindCandidate) == 8, "half a quadword");
 constexpr uint16_t kFindOfB = 0x8000;
 
-/// The points of a in b, then those of b in a; of a body with itself, its points in it. All contacts are as
-/// seen from a.
+/// A task finds the points of a in b, then those of b in a; or the points of a body in the body itself. All contacts are as seen from a.
 ///
-/// What may touch is found in two steps: candidates, by bounds, and contacts among them. Candidates stay the same as long as
+/// It works in two steps: it finds candidates by bounds, and then contacts among them. Candidates can be used again as long as
 /// nothing in one body has moved by more than `margin` against anything in the other since they were found.
 struct alignas(128) FindTask {
-  FindBody a, b;           ///< the same in all for a body with itself
+  FindBody a, b;           ///< equal if the task is about one body with itself
   uint64_t candidates_ea;  ///< room for kFindMaxCandidates FindCandidate; 0: the kernel writes none
-  /// How many of them are known from a task before; kFindUnknown: the kernel looks for them.
+  /// How many candidates are known from a task before; kFindUnknown: the kernel looks for them.
   uint32_t candidate_count;
-  float margin;           ///< metres, 0 or more: of the candidates that are looked for
+  float margin;           ///< metres, 0 or more: of candidates that the kernel looks for
   float low[4], high[4];  ///< the box that both bodies' ends have in common; x y z 0
   float step;             ///< seconds
   float inverse_step;
@@ -91,14 +89,14 @@ static_assert(sizeof(FindTask) == 256, "two lines");
 
 enum FindOverflow : uint32_t {
   kFindNoOverflow = 0,
-  kFindTooMany = 1,    ///< there is no room for all that has to be looked at
-  kFindJobIsFull = 2,  ///< contacts of the job's tasks before have left too little room
+  kFindTooMany = 1,    ///< there is no room for all cells that are near, or for all contacts
+  kFindJobIsFull = 2,  ///< earlier tasks of the job have left too little room for contacts
 };
 
 struct alignas(16) FindResult {
-  uint32_t count;     ///< contacts, behind those of the job's tasks before
-  uint32_t pushes;    ///< not 0: one of them at least pushes
-  uint32_t overflow;  ///< a FindOverflow; if there is one, there are no contacts
+  uint32_t count;     ///< number of contacts; they lie after those of the job's earlier tasks
+  uint32_t pushes;    ///< not 0: at least one contact pushes
+  uint32_t overflow;  ///< a FindOverflow; if it is not kFindNoOverflow, there are no contacts
   /// How many there are at candidates_ea; kFindUnknown: the margin was too large, or there are more than fit.
   uint32_t candidate_count;
 };
@@ -121,7 +119,7 @@ inline uint32_t find_model_bytes(const FindBody& body) {
   return body.cell_count * static_cast<uint32_t>(sizeof(FindCell)) +
          body.group_count * static_cast<uint32_t>(sizeof(FindGroup));
 }
-/// All that a task needs, of which bodies of one model share it.
+/// All bytes that a task needs. Two bodies of one model share its bytes.
 inline uint32_t find_bytes(const FindTask& task) {
   const uint32_t first = find_model_bytes(task.a) + find_state_bytes(task.a);
   if (task.itself != 0) return first;
@@ -140,14 +138,14 @@ struct alignas(128) FindJob {
 };
 static_assert(sizeof(FindJob) == 128, "one line");
 
-/// In cells at rest: what is deeper leaves by the face by which it has come in (contacts/entered_face.h).
+/// Depth in cells at rest: a deeper point leaves by the face by which it has come in (contacts/entered_face.h).
 constexpr float kFindDeep = 0x1.99999ap-4f;  // 0.1
-/// What is near, in cells: what comes nearer in a step is in contact.
+/// Distance in cells: a point that comes nearer than this in a step is in contact.
 constexpr float kFindNear = 0.005f;
-/// A body does not touch itself in cells whose middles are nearer at rest, in cells.
+/// Distance in cells: a body does not touch itself in cells whose middles are nearer than this at rest.
 constexpr int32_t kFindApart = 3;
-/// A depth of up to kFindSlop cells stays; of what is deeper, kFindPushShare goes in a step, and no more than
-/// kFindMostPush cells.
+/// A depth of up to kFindSlop cells is not corrected. Of a greater depth, a step removes the share kFindPushShare of the excess, and no
+/// more than kFindMostPush cells.
 constexpr float kFindSlop = 0.01f, kFindPushShare = 0x1.99999ap-4f, kFindMostPush = 0.02f;  // 0.1
 
 /// What the kernel's main returns.

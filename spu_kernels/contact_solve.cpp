@@ -1,4 +1,4 @@
-// contact_solve: solves contacts of soft bodies with each other, with rigid bodies and with what nothing moves.  [Cat05]
+// contact_solve: solves contacts of soft bodies with each other, with rigid bodies and with things that nothing moves.  [Cat05]
 //
 //   array       direction  element                        count          alignment
 //   job         in         SolveJob, 128 bytes            1              128
@@ -10,8 +10,8 @@
 //   positions   in         x y z and anything, 16 bytes   <= 1023        16
 //   start       in         SolveVelocity, 16 bytes        <= 1023        16
 //
-// A task has two bodies and all contacts between them in the local store for all its iterations. Tasks of a job follow each other:
-// one may have a body of the one before.
+// A task keeps two bodies and all contacts between them in the local store during all its iterations. The kernel does the tasks of a job
+// in order, so a task may have a body of an earlier one.
 //
 // Budget: 192 KB. Contacts 88 KB, or cells and positions in their place; velocities and pushes of two bodies 64 KB; rigid bodies 14 KB;
 // the rest for code and 4 KB of stack.

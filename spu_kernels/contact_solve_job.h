@@ -6,21 +6,21 @@
 
 namespace softcell::spu {
 
-/// What the kernel has of a particle: a velocity times the root of its mass, so that one number says both how
-/// much a particle counts for a contact and how much it takes of an impulse.
+/// A particle: its velocity times the root of its mass. With that, one weight says both how
+/// much a particle counts for a contact and how much of an impulse it gets.
 struct alignas(16) SolveVelocity {
   float x, y, z;  ///< sqrt(kg) m/s
   float root;     ///< sqrt(kg) in SolveTask::start_ea, else 0
 };
 static_assert(sizeof(SolveVelocity) == 16, "a quadword");
 
-/// How a body's velocities have changed in this step: of its `count` particles, and one slot of zeros. Behind them
-/// as much again for pushes: velocities that last one step only. Changes are small, so the sums that truncate are
-/// too: momentum is kept better than by adding to velocities themselves.
+/// The changes of a body's velocities in this step: `count` particles, and one slot of zeros. After them
+/// as much again for pushes: velocities that last only for this step. Changes are small, so the truncation errors of their sums are small,
+/// too: momentum is kept better than if impulses were added to velocities.
 constexpr uint32_t solve_slots(uint32_t count) { return 2 * (count + 1); }
 
-/// Where a contact holds on to a soft body: up to eight particles. Those that are not needed are the slot of
-/// zeros with a weight of zero; no other one occurs twice.
+/// The particles of a soft body on which a contact acts, up to eight. Unused ones are the slot of
+/// zeros, with a weight of zero; no other particle occurs twice.
 struct alignas(16) SolveAnchor {
   uint16_t particle[8];
   float weight[8];  ///< share of the contact times the root of the inverse mass, 1/sqrt(kg)
@@ -28,26 +28,27 @@ struct alignas(16) SolveAnchor {
 
 /// A rigid body that impulses move.
 struct alignas(16) SolveRigid {
-  float velocity[3];  ///< changed: m/s, how that of its centre has changed in this step
+  float velocity[3];  ///< changed: m/s, the change of its centre's velocity in this step
   float inverse_mass;
   float spin[3];                ///< changed: rad/s, likewise
-  float held;                   ///< 0: it is free, and what follows the inverse inertia is not read
+  float held;                   ///< 0: the body is free, and members after inverse_inertia are not read
   float inverse_inertia[3][4];  ///< columns in world axes, 1/(kg m^2); the fourth row is 0
-  // What it lies on takes a part of impulses. Columns in world axes, as above.
+  // The supports of the body take a part of its impulses. Columns in world axes, as above.
   float linear[3][4];    ///< 1/kg: of its velocity by an impulse, besides that by the inverse mass
   float coupling[3][4];  ///< 1/(kg m): of its velocity by a moment
   float coupled[3][4];   ///< the transposed: of its spin by an impulse
 };
 static_assert(sizeof(SolveRigid) == 224, "fourteen quadwords");
 
-/// Where a contact holds on to a rigid body.
+/// The point of a rigid body on which a contact acts.
 struct alignas(16) SolveRigidPoint {
-  uint16_t rigid;  ///< which of the task's
+  uint16_t rigid;  ///< index of the rigid body in the task
   uint16_t zeros[7];
   float arm[3];     ///< metres, from its centre of mass
-  float push_mass;  ///< kg: of a alone; nothing pushes rigid bodies
-  float feels[3];  ///< 1/kg: what an impulse of 1 kg m/s along the normal changes of a's velocity against b's
-  float friction_mass;  ///< kg: the least that an impulse across the normal may meet
+  float push_mass;  ///< kg: of a alone, because nothing pushes rigid bodies
+  /// 1/kg: the change of a's velocity against b's by an impulse of 1 kg m/s along the normal.
+  float feels[3];
+  float friction_mass;  ///< kg: the smallest mass against any impulse across the normal
 };
 static_assert(sizeof(SolveRigidPoint) == sizeof(SolveAnchor), "in place of each other");
 
@@ -63,14 +64,14 @@ struct alignas(16) SolveContact {
   /// m/s: the velocity of b minus that of a before anything has changed; b is a body, or what nothing moves.
   float carried[3];
   float least_velocity;  ///< m/s along the normal, of a against b
-  float mass;            ///< kg: what an impulse of 1 kg m/s moves by 1 m/s
+  float mass;            ///< kg: the mass that an impulse of 1 kg m/s moves by 1 m/s
   float friction;
   float push_velocity;        ///< m/s along the normal, out of each other; 0: none
   float push;                 ///< changed: kg m/s
   float friction_impulse[3];  ///< changed: kg m/s
   float impulse;              ///< changed: kg m/s along the normal, not negative
-  float point[3];             ///< metres, world: for those who ask where bodies touch
-  uint16_t cell_a, cell_b;    ///< that hold the two anchors; kSolveNoCell: none does
+  float point[3];             ///< metres, in the world: for reports of contacts
+  uint16_t cell_a, cell_b;    ///< the cells of the two anchors; kSolveNoCell: none
 };
 static_assert(sizeof(SolveContact) == 176, "eleven quadwords");
 
@@ -81,8 +82,9 @@ struct alignas(16) SolveCell {
   uint16_t particle[8];
 };
 
-/// Contacts of one body with another one, with itself, with rigid bodies, or with what nothing moves, one after the other; then
-/// cells of the first body are stiffened. Counts within kSolveMaxParticles, kSolveMaxContacts, kSolveMaxRigids, kSolveMaxCells.
+/// Contacts of one body with another one, with itself, with rigid bodies, or with things that nothing moves. The kernel solves them one
+/// after the other and then stiffens cells of the first body. Counts are at most kSolveMaxParticles, kSolveMaxContacts, kSolveMaxRigids,
+/// kSolveMaxCells.
 struct alignas(128) SolveTask {
   uint64_t a_ea;          ///< solve_slots(a_count) SolveVelocity, a multiple of 128
   uint64_t b_ea;          ///< likewise; 0: there is no b; a_ea: a body with itself
@@ -95,11 +97,11 @@ struct alignas(128) SolveTask {
   uint32_t contact_count;
   uint32_t rigid_count;  ///< not 0: contacts are with these, and there is no b
   uint32_t cell_count;
-  uint32_t iterations;  ///< over the contacts
-  uint32_t pushes;      ///< 0: none of the contacts pushes
-  uint32_t b_sleeps;    ///< not 0: b is only read, because nothing moves it; likewise a
-  uint32_t a_sleeps;
-  float stiffening;       ///< 0..1: the share that is taken of what corners of a cell do against each other
+  uint32_t iterations;    ///< over the contacts
+  uint32_t pushes;        ///< 0: none of the contacts pushes
+  uint32_t b_sleeps;      ///< not 0: nothing moves b, which is only read
+  uint32_t a_sleeps;      ///< the same of a
+  float stiffening;       ///< 0..1: the share of the relative motion of a cell's corners that is removed
   float inverse_spacing;  ///< 1/m
   uint32_t pad[7];
 };
@@ -110,8 +112,8 @@ constexpr uint32_t kSolveMaxContacts = 512;
 constexpr uint32_t kSolveMaxRigids = 64;
 constexpr uint32_t kSolveMaxCells = 1024;
 
-/// The job's descriptor, one line in main memory. No two jobs that run at the same time may share a rigid body, or a soft one that
-/// is not asleep in both.
+/// The job's descriptor, one line in main memory. Two jobs that run at the same time must not share a rigid body, or a soft body that
+/// is awake in one of them.
 struct alignas(128) SolveJob {
   uint64_t tasks_ea;    ///< task_count SolveTask, done in this order
   uint32_t task_count;  ///< any number, 0 included

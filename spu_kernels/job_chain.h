@@ -56,8 +56,8 @@ struct alignas(128) ChainState {
 };
 static_assert(sizeof(ChainState) == 128, "one line");
 
-/// Written once, as a whole line, when a chain has ended: after its last stage, or after the stage in which a
-/// job failed.
+/// Written once, as a whole line, when a chain has ended: after its last stage, or after a stage in which a
+/// job has failed.
 struct alignas(128) ChainDone {
   uint32_t kick;
   uint32_t pad[31];

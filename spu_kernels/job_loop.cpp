@@ -14,8 +14,8 @@
 //         ^                                                                                     | none left
 //         +---- its bell was rung ---- enter the board as asleep, sleep with the bell reserved <+
 //
-// argp: effective address of the JobBoard; envp: of the JobBells, one for each SPE. Budget: 4864 bytes; it
-// lies at the top of the local store with its stack below it, so that jobs have the rest, as if they were
+// argp: effective address of the JobBoard; envp: of the JobBells, one for each SPE. Budget: 4864 bytes. The kernel
+// lies at the top of the local store with its stack below it, so a job has all the rest, as if it were
 // alone.
 //
 // Compiles unchanged with a real SPU g++ (7 to 9, -std=c++17).
@@ -44,10 +44,10 @@ struct alignas(128) LocalStoreMap {
 };
 LocalStoreMap ls;
 
-/// Whose image lies in the job area; 0: nobody's.
+/// Effective address of the image that lies in the job area; 0: there is none.
 uint64_t resident_image = 0;
 
-/// Who this is, and where everybody looks.
+/// The number of this SPE, and the addresses of the board and the bells.
 struct Post {
   uint64_t spe_id;
   uint64_t board_ea;
@@ -57,13 +57,12 @@ struct Post {
   uint64_t bell_ea(uint64_t spe) const { return bells_ea + spe * sizeof(JobBell); }
 };
 
-/// The pointer to a local-store address. On an SPU a pointer is that address; elsewhere the local store has a
-/// base.
+/// The pointer to a local-store address. On an SPU a pointer is that address; on a host the local store begins at another address than 0.
 char* local_store(uint32_t address) {
   return reinterpret_cast<char*>((reinterpret_cast<uintptr_t>(&ls) & ~kLocalStoreMask) | address);
 }
 
-/// There may be new work: whoever has looked and is about to sleep looks again.
+/// Announces that there may be new work: SPEs that found none and are about to sleep look again.
 void announce_work(const Post& post) {
   do {
     load_and_reserve(&ls.board, post.board_ea);
@@ -76,7 +75,7 @@ void set_bell(const Post& post, uint64_t spe, uint32_t rung) {
   store_line(&ls.bell, post.bell_ea(spe));
 }
 
-/// Wakes one of the SPEs that sleep, if any does.
+/// Wakes one of the sleeping SPEs, if there is one.
 void wake_one(const Post& post) {
   uint64_t sleeper = 0;
   do {
@@ -98,7 +97,7 @@ bool take(uint64_t chain_ea, uint32_t& job) {
   return true;
 }
 
-/// Initialised data begin each run as they were linked; the rest of a resident image stays.
+/// Fetches the job's image. If it is resident, fetches only its initialised data, which begin each run with their linked values.
 void fetch_image() {
   const JobDescriptor& job = ls.job;
   if (resident_image == job.image_ea) {
@@ -109,17 +108,17 @@ void fetch_image() {
     resident_image = job.image_ea;
   }
   wait_for_tag(kTagImage);
-  spu_sync_c();  // the instructions just written are what is executed
+  spu_sync_c();  // so that the SPU executes the instructions that were just written
 }
 
-/// Runs one job. @return  the status of its main; all its transfers are complete.
+/// Runs one job and waits for all its transfers. @return  the status of its main
 uint32_t run(uint64_t spe_id, uint64_t descriptor_ea) {
   mfc_get(&ls.job, descriptor_ea, sizeof ls.job, kTagImage, 0, 0);
   wait_for_tag(kTagImage);
   fetch_image();
   using JobMain = int(uint64_t, uint64_t, uint64_t);
   JobMain* const job_main = reinterpret_cast<JobMain*>(local_store(ls.job.entry));
-  mfc_write_tag_mask(0);  // as a program of its own finds it
+  mfc_write_tag_mask(0);  // as when a program starts
   mark_job_begin(ls.job.image_ea, descriptor_ea);
   const int status = job_main(spe_id, ls.job.argp, ls.job.envp);
   mark_job_end();
@@ -153,14 +152,14 @@ void finish(const Post& post, uint64_t chain_ea, uint32_t job, uint32_t status) 
   }
 }
 
-/// Works off what the board offers, the most urgent chain first. @return  false when there was nothing.
+/// Takes and runs one job of the most urgent chain that has one. @return  false: there was none
 bool work(const Post& post) {
   for (uint32_t c = 0; c < kMaxChains; ++c) {
     const uint64_t chain_ea = ls.board.chains[c];
     uint32_t job = 0;
     if (chain_ea == 0 || !take(chain_ea, job)) continue;
     const uint64_t descriptor_ea = ls.chain.descriptors_ea + uint64_t{job} * sizeof(JobDescriptor);
-    // Who has entered itself as asleep since the board was looked at, has looked at the chains after that.
+    // An SPE that has set its bit in `asleep` after this SPE read the board has read the chains after that, too: it needs no waking.
     if (ls.chain.next != ls.chain.stage_end && ls.board.asleep != 0) wake_one(post);
     const uint32_t status = run(post.spe_id, descriptor_ea);
     finish(post, chain_ea, job, status);
@@ -169,7 +168,7 @@ bool work(const Post& post) {
   return false;
 }
 
-/// Enters this SPE in the board as asleep. @return  false when there may be work after all.
+/// Sets the bit of this SPE in `asleep`. @return  false: there may be new work, and the bit is not set
 bool enter(const Post& post, uint32_t generation) {
   do {
     load_and_reserve(&ls.board, post.board_ea);
@@ -179,8 +178,8 @@ bool enter(const Post& post, uint32_t generation) {
   return true;
 }
 
-/// Sleeps until somebody rings. With the bell's line reserved no ring can be missed: one before the
-/// reservation shows in the line, one after it loses the reservation.
+/// Sleeps until somebody rings the bell. No ring is missed: a ring before the reservation of the bell's line shows in the line, and a ring
+/// after it ends the reservation.
 void sleep_at_bell(const Post& post) {
   spu_write_event_mask(MFC_LLR_LOST_EVENT);
   for (;;) {
@@ -190,10 +189,10 @@ void sleep_at_bell(const Post& post) {
     spu_read_event_status();
   }
   spu_write_event_ack(MFC_LLR_LOST_EVENT);
-  spu_write_event_mask(0);  // a job begins with an empty one, as a program of its own would
+  spu_write_event_mask(0);  // as when a program starts
 }
 
-/// Nothing was found at this generation.
+/// Sleeps, unless the board's generation is no longer the one at which this SPE found no work.
 void rest(const Post& post, uint32_t generation) {
   set_bell(post, post.spe_id, 0);
   if (enter(post, generation)) sleep_at_bell(post);

@@ -29,7 +29,7 @@
 namespace softcell::spu {
 namespace {
 
-/// Of the job and the plan, and of the body that is stepped.
+/// A tag group for the job and the plan, and one for the body that is stepped.
 enum Tag : uint32_t { kTagJob = 0, kTagBody = 1 };
 
 constexpr uint32_t kBodiesAtOnce = 64;  // MatchBody records fetched by one get
@@ -50,7 +50,7 @@ LocalStoreMap ls;
 
 const MatchPlanHeader& plan() { return *reinterpret_cast<const MatchPlanHeader*>(ls.arena); }
 
-/// @return  false when plan and state do not fit the arena; only the header is there then.
+/// Fetches the plan. @return  false: plan and state do not fit into the arena, and only the plan's header was fetched
 bool load_plan() {
   mfc_get(ls.arena, ls.job.plan_ea, sizeof(MatchPlanHeader), kTagJob, 0, 0);
   wait_for_tag(kTagJob);
@@ -61,7 +61,7 @@ bool load_plan() {
   return true;
 }
 
-/// One body, which waits for the one before it to leave.
+/// Steps one body. Its gets have a fence, so they wait for the puts of the body before, which lies in the same place.
 void step(const MatchBody& body, const BodyMap& map) {
   const uint32_t particles = plan().particles;
   getf_large(map.positions, body.positions_ea, particles * 16, kTagBody);

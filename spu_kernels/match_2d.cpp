@@ -12,8 +12,8 @@
 // body while it steps another:
 //
 //   get   [0 A][1 B]          [2 A]          [3 B]     A, B: two places in local store, a tag group each;
-//   work       [   0 A   ]    [   1 B   ]    [ 2 A     a body is fetched behind a fence, after the put of
-//   put                  [0 A]          [1 B]          the one whose place it takes
+//   work       [   0 A   ]    [   1 B   ]    [ 2 A     a get has a fence: it waits for the put of the body
+//   put                  [0 A]          [1 B]          that was in the same place before
 //
 // Budget: 224 KB. 192 KB for plan, bodies and sums (about 140 bytes a particle: 1300 fit), the rest for code
 // and 2 KB of stack.
@@ -32,7 +32,8 @@
 namespace softcell::spu {
 namespace {
 
-/// The two places of bodies have tags of their own; what comes before all bodies shares the first's.
+/// Each of the two places of bodies has a tag group: kTagBody and kTagBody + 1. Job and plan, which are fetched before all bodies, use the
+/// first one.
 enum Tag : uint32_t { kTagJob = 0, kTagBody = 0 };
 
 /// Everything this kernel keeps in local store beside its code and stack.
@@ -44,7 +45,7 @@ LocalStoreMap ls;
 
 const MatchPlanHeader2d& plan() { return *reinterpret_cast<const MatchPlanHeader2d*>(ls.arena); }
 
-/// @return  false when plan and state do not fit the arena; only the header is there then.
+/// Fetches the plan. @return  false: plan and bodies do not fit into the arena, and only the plan's header was fetched
 bool load_plan() {
   mfc_get(ls.arena, ls.job.plan_ea, sizeof(MatchPlanHeader2d), kTagJob, 0, 0);
   wait_for_tag(kTagJob);
@@ -60,20 +61,20 @@ struct BodyPlace {
   uint64_t positions_ea, state_ea;
 };
 
-/// Of the body behind: a sum, as an SPU has no 64-bit product.
+/// The place of the next body. Addresses are added up, because an SPU has no 64-bit multiplication.
 BodyPlace behind(const BodyPlace& body) {
   return {body.positions_ea + match_2d_positions_stride(plan()),
           body.state_ea + match_2d_state_stride(plan())};
 }
 
-/// Starts fetching a body; what was put from its place before goes first.
+/// Begins to fetch a body. The gets have a fence, so they wait for the puts of the body that was in this place before.
 void fetch(const BodyMap2d& map, const BodyPlace& body, uint32_t tag) {
   getf_large(map.positions, body.positions_ea, match_2d_vectors_bytes(plan()), tag);
   getf_large(map.result, body.state_ea, match_2d_state_bytes(plan()), tag);
 }
 
-/// One body in local store, as it came and as it goes.
-/// @return  bytes of its state that are to be written
+/// Steps one body in local store. Positions and velocities arrive and leave as pairs of particles.
+/// @return  the number of bytes of its state that have to be written to main memory
 uint32_t step(const PlanMap2d& map, const BodyMap2d& body) {
   const uint32_t particles = plan().particles, pairs = 2 * map.particle_groups;
   vec_float4* const x = particle_pairs(body.positions);

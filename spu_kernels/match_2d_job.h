@@ -2,9 +2,8 @@
 // The contract of the kernel `match_2d`: plain data in main memory, the same bytes for both sides.
 // Freestanding; included by the kernel and by the PPU side. All scalars are in the machine's own byte order.
 //
-// As match_job.h in two dimensions, where a rotation is a direction with a closed form and a slot is one
-// quadword. The bodies of one model stand one behind the other in two arrays, one that the SPEs only read and
-// one that they change; each body begins on a line of 128 bytes:
+// The same as match_job.h in two dimensions, where a rotation has a closed form and a slot is one quadword. The bodies of one model lie one
+// after the other in two arrays: one that the SPEs only read, and one that they change. Each body begins on a line of 128 bytes:
 //
 //     positions   particles, padded to a multiple of four            match_2d_positions_stride() each
 //     states      MatchResult2d, velocities, directions of regions   match_2d_state_stride() each
@@ -22,7 +21,7 @@ struct MatchVector2d {
   float x, y;
 };
 
-/// Constants of four particles. A last group that is not full is padded with particles of no mass.
+/// Constants of four particles. The last group is filled up with particles without mass.
 struct alignas(16) MatchParticles2d {
   float rest_x[4];         ///< x0, the rest position, about the body's rest centre; metres
   float rest_y[4];         ///< y0
@@ -33,7 +32,7 @@ struct alignas(16) MatchParticles2d {
 };
 static_assert(sizeof(MatchParticles2d) == 96, "six quadwords");
 
-/// Constants of four regions, padded with regions of nothing.
+/// Constants of four regions. The last group is filled up with regions without particles.
 struct alignas(16) MatchRegions2d {
   float centre_x[4];  ///< c0, the rest centre, about the body's rest centre; metres
   float centre_y[4];
@@ -41,8 +40,7 @@ struct alignas(16) MatchRegions2d {
 };
 static_assert(sizeof(MatchRegions2d) == 48, "three quadwords");
 
-/// The directions of the x axes of four regions. A region whose sum has no direction keeps that of the last
-/// step.
+/// The directions of the x axes of four regions. A region whose sum has no direction keeps the direction of the last step.
 struct alignas(16) MatchDirections {
   float cosine[4], sine[4];
 };
@@ -118,7 +116,7 @@ constexpr uint32_t match_2d_local_store_bytes(const MatchPlanHeader2d& plan) {
          groups_of(plan.regions) * 32 + 2 * plan.slots * kMatch2dSlotBytes;
 }
 
-/// Bytes of local store that the kernel has for that.
+/// Bytes of local store that the kernel has for these.
 constexpr uint32_t kMatch2dArenaBytes = 192 * 1024;
 
 /// True if a plan and its bodies fit. Accepts any numbers in the header.

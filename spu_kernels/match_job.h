@@ -3,9 +3,9 @@
 // Freestanding; included by the kernel and by the PPU side. All scalars are in the machine's own byte order.
 //
 // A plan contains what all bodies of one model share: constants of particles and regions, and lists that say
-// which slots are added to which sums. The PPU side writes it once (ppu/plans/match_plan.h). Four particles, and
-// four regions, stand together, one to a lane; a last group that is not full is padded with particles of no
-// mass and regions of nothing. Particle i is in slot i + 1; a slot is three quadwords.
+// which slots are added to which sums. The PPU side writes it once (ppu/plans/match_plan.h). Particles and regions lie in groups of four,
+// one in each lane. The last group is filled up with particles without mass, or regions without particles. Particle i is in slot i + 1. A
+// slot is three quadwords.
 
 #include <stdint.h>
 
@@ -42,7 +42,7 @@ struct alignas(16) MatchRotations {
 };
 static_assert(sizeof(MatchRotations) == 64, "four quadwords");
 
-/// Constants that keep the pull from moving the body as a whole: match/hold.h.
+/// Constants by which match/hold.h keeps the pull from moving the body as a whole.
 struct MatchHold {
   /// 1 / (kg m), a power of two: m (g - x) times this is below kMatchPullLimit for pulls up to 1/16 of the
   /// body.
@@ -84,18 +84,20 @@ struct alignas(16) MatchResult {
 /// The addresses of one body. Both are multiples of 16 (128 is fastest).
 struct alignas(16) MatchBody {
   uint64_t positions_ea;  ///< x y z and 0 of each particle, metres; read only
-  uint64_t state_ea;      ///< changed in place: a MatchResult; then x y z and 0 of each particle, m/s, padded
-                          ///< to groups of four; then MatchRotations of all groups of regions
+  /// Changed in place: a MatchResult; then velocities, x y z and 0 of each particle, m/s, padded to groups of four; then MatchRotations of
+  /// all groups of regions.
+  uint64_t state_ea;
 };
 
 /// The job's descriptor, one line in main memory: bodies of one model, stepped one after the other.
 struct alignas(128) MatchJob {
-  uint64_t plan_ea;           ///< a MatchPlanHeader and what follows it, 128-byte aligned
-  uint64_t bodies_ea;         ///< body_count MatchBody, a multiple of 16
-  uint32_t body_count;        ///< any number, 0 included
-  float pull;                 ///< alpha / h, 1/s
-  float damping;              ///< k, 0..1
-  uint32_t least_iterations;  ///< of each rotation; 2 and 2 for a fixed effort, 0 and 6 to go by the residual
+  uint64_t plan_ea;     ///< a MatchPlanHeader and what follows it, 128-byte aligned
+  uint64_t bodies_ea;   ///< body_count MatchBody, a multiple of 16
+  uint32_t body_count;  ///< any number, 0 included
+  float pull;           ///< alpha / h, 1/s
+  float damping;        ///< k, 0..1
+  /// For each rotation: 2 and 2 for a fixed effort; 0 and 6 to stop when the residual is small.
+  uint32_t least_iterations;
   uint32_t most_iterations;
   uint32_t pad[23];
 };
@@ -131,7 +133,7 @@ constexpr uint32_t match_local_store_bytes(const MatchPlanHeader& plan) {
          2 * match_buffer_bytes(plan);
 }
 
-/// Bytes of local store that the kernel has for that; its checked build has twice the code and less room.
+/// Bytes of local store that the kernel has for these. Its checked build has twice the code, and so less room.
 constexpr uint32_t kMatchArenaBytes = 216 * 1024, kMatchCheckedArenaBytes = 176 * 1024;
 
 /// True if a plan and one body's state fit in `arena_bytes`. Accepts any numbers in the header.

@@ -6,7 +6,7 @@
 //   slices      in         TileSlice, 64 bytes       one for each plane             16
 //   samples     in         x y z 0, 16 bytes         16                             16
 //   reports     in, out    TileReport, 256 bytes     all in; half of one out        128
-//   and of each slice, gets and puts of up to 16 KB, by pass:
+//   and for each slice, by gets and puts of up to 16 KB, in each pass:
 //   gather      in         lists, positions, rest moments, regions, rotations
 //               out        rotations, motions, momenta
 //   scatter     in         lists, motions, positions, velocities, rest moments, weights
@@ -41,7 +41,7 @@ constexpr uint32_t kArenaBytes = kTileArenaBytes;
 struct alignas(128) LocalStoreMap {
   TileJob job;
   TiledBody body;
-  TileReport report;  // one pass writes one half
+  TileReport report;  // `gather` writes its first line, `scatter` its second
   vec_float4 samples[kMatchSamples];
   alignas(128) char arena[kArenaBytes];
 };
@@ -58,13 +58,13 @@ void load_body() {
   wait_for_tag(kTagOut);
 }
 
-/// What all tiles have found.
+/// The reports of all tiles together.
 struct Findings {
   PullSum pulls = no_pulls();
   bool finite = true;
 };
 
-/// Needs the arena, before anything else does.
+/// Reads the reports into the arena. Call it before a pass uses the arena.
 Findings read_reports() {
   constexpr uint32_t kAtOnce = kMaxTransferBytes / static_cast<uint32_t>(sizeof(TileReport));
   Findings all;
@@ -91,7 +91,7 @@ void run(Pass& pass, const Store& store) {
   run_slices(pass, store.slices, ls.job.slice_count);
 }
 
-/// Without a call of memset(), which a local store has not.
+/// A loop of its own, because there is no memset() in a local store.
 void clear_report() {
   auto* const quadwords = reinterpret_cast<vec_uint4*>(&ls.report);
   for (uint32_t i = 0; i < sizeof(TileReport) / 16; ++i) quadwords[i] = spu_splats(0u);

@@ -10,11 +10,11 @@
 //   damp     omega, b          -->  their sums      -->  v                                 over the particles
 //
 // A tile is some rows (y) of some planes (x) of the lattice, over its whole height (z). A job runs one pass
-// over one tile, plane by plane. Such a slice reads one contiguous range of main memory, the tile's rows and
-// half_width more on either side, and writes one, its own rows. Sums over planes continue from slice to
+// over one tile, plane by plane. A plane of a tile is a slice. It reads one contiguous range of main memory, the tile's rows and
+// half_width more on either side, and writes one range, the tile's rows. Sums over planes continue from slice to
 // slice. The kernel fetches a slice while it works on the one before.
 //
-// The PPU side lays all that out (ppu/plans/tile_plan.h): which slots hold what, and when one is free again.
+// The PPU side plans all of that (ppu/plans/tile_plan.h): what each slot holds, and when a slot is free again.
 // Sums follow the rules of match_job.h, with the same chains as for a whole body, so that the bits are the
 // same.
 //
@@ -28,25 +28,25 @@
 namespace softcell::spu {
 
 /// One slice of a tile, in one direction: `up` from particles to regions, `down` from regions to particles.
-/// Slots are numbers here, offsets in sum lists; for `damp`, whose slots have two rows, these are others.
+/// Slots are numbers here, and offsets in sum lists. The slots of `damp` have two rows, so that pass has lists of its own.
 struct alignas(64) TileSlice {
-  uint32_t input;         ///< first place that comes in; a multiple of 4
-  uint32_t input_groups;  ///< of four; 0: nothing comes in
+  uint32_t input;         ///< number of the first particle or region that is read; a multiple of 4
+  uint32_t input_groups;  ///< groups of four; 0: nothing is read
   uint32_t input_slot;
-  uint32_t bars_slot, plates_slot, sums_slot;  ///< where the three lists begin to write
-  uint32_t output;                             ///< first place that goes out; a multiple of 4
-  uint32_t output_groups;                      ///< 0: nothing is ready yet
-  uint32_t lists;                              ///< offset from TiledBody::lists_ea, a multiple of 16; bytes
-  uint32_t lists_bytes;                        ///< a multiple of 16
-  uint32_t plates_list, sums_list;             ///< offsets of lists from the first, that of bars; bytes, even
-  /// Offset from `lists`. Of a slice down, the offsets of each output particle's totals precede it, four to a
-  /// group.
+  uint32_t bars_slot, plates_slot, sums_slot;  ///< the first slots that the three lists write
+  uint32_t output;         ///< number of the first particle or region that is written; a multiple of 4
+  uint32_t output_groups;  ///< 0: nothing is ready yet
+  uint32_t lists;          ///< offset from TiledBody::lists_ea, a multiple of 16; bytes
+  uint32_t lists_bytes;    ///< a multiple of 16
+  uint32_t plates_list, sums_list;  ///< offsets of these lists from the list of bars; bytes, even
+  /// Offset of the list of bars from `lists`. In a slice of `down`, the offsets of the output particles' totals come before it, four for
+  /// each group.
   uint32_t bars_list;
   uint32_t pad[3];
 };
 static_assert(sizeof(TileSlice) == 64, "four quadwords");
 
-/// Constants of four particles, for the passes that want them.
+/// Constants of four particles, for the passes that need them.
 struct alignas(16) TileRest {
   float rest_moment[4][4];  ///< as in MatchParticles
 };
@@ -72,11 +72,11 @@ struct alignas(16) TileMomenta {
 
 /// The report of one tile. Two lines, because two passes write one each.
 struct alignas(128) TileReport {
-  float residual_square;      ///< the largest; by `gather`
-  uint32_t positions_finite;  ///< likewise
+  float residual_square;      ///< the largest of the tile; `gather` writes it
+  uint32_t positions_finite;  ///< `gather` writes it
   uint32_t pad0[30];
-  uint32_t pulls[28];          ///< a PullSum; by `scatter`
-  uint32_t velocities_finite;  ///< likewise
+  uint32_t pulls[28];          ///< a PullSum; `scatter` writes it
+  uint32_t velocities_finite;  ///< `scatter` writes it
   uint32_t pad1[3];
 };
 static_assert(sizeof(TileReport) == 256, "two lines");
@@ -96,9 +96,10 @@ struct alignas(128) TiledBody {
   uint64_t positions_ea;      ///< x y z 0 of each place, metres
   uint64_t velocities_ea;     ///< x y z 0 of each place, m/s; changed in place by `damp`
   uint64_t pulled_ea;         ///< TilePulled of each group of particles
-  uint64_t rotations_in_ea;   ///< MatchRotations of each group of regions: the last step's,
-  uint64_t rotations_out_ea;  ///< and this one's
-  uint64_t motions_ea;  ///< of each region's place: a slot with (R, t); then one of two rows, (b, omega)
+  uint64_t rotations_in_ea;   ///< MatchRotations of each group of regions, of the last step
+  uint64_t rotations_out_ea;  ///< the same of this step
+  /// A slot of each region: (R, t) after `gather`; after `twist` a slot of two rows, (b, omega).
+  uint64_t motions_ea;
   uint64_t momenta_ea;  ///< TileMomenta of each group of regions
   uint64_t reports_ea;  ///< a TileReport of each tile
   uint64_t lists_ea;
@@ -112,7 +113,7 @@ struct alignas(128) TiledBody {
   uint32_t least_iterations, most_iterations;
   float noise_floor, grid;  ///< as in MatchPlanHeader
   MatchHold hold;
-  uint32_t samples[kMatchSamples];  ///< places
+  uint32_t samples[kMatchSamples];  ///< numbers of particles spread over the body
   TileLimits up, down;
   uint32_t pad[4];
 };
@@ -153,7 +154,7 @@ constexpr uint32_t tile_down_bytes(const TileLimits& down) {
          down.output_groups * static_cast<uint32_t>(sizeof(TilePulled)) + down.slots * kMatchSlotBytes;
 }
 
-/// Bytes of local store that the kernel has for that; its checked build has more code and less room.
+/// Bytes of local store that the kernel has for these. Its checked build has more code, and so less room.
 constexpr uint32_t kTileArenaBytes = 208 * 1024, kTileCheckedArenaBytes = 144 * 1024;
 
 constexpr bool tile_limits_small(const TileLimits& limits) {

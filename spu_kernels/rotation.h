@@ -8,13 +8,12 @@
 //   H = (tr S + mu) 1 - sym(S)   minus the Hessian; eigenvalues s_j + s_k + mu at the optimum
 //   omega = H^-1 g,  q := normalize(q (1, omega / 2))
 //
-// With signed singular values s1 >= s2 >= |s3|, what A leaves open is a turn about an axis with s_j + s_k =
-// 0: the twist of a line, everything of a point. g has no component there, mu keeps H invertible, and the
-// rotation stays as it was. Rank 2 leaves nothing open. The answer is made from a unit quaternion and
-// therefore proper for every A.
+// With signed singular values s1 >= s2 >= |s3|, A does not determine rotations about an axis with s_j + s_k = 0: the twist of a line, any
+// rotation of a point. About such an axis g has no component and mu keeps H invertible, so the rotation about it does not change. A of
+// rank 2 determines the rotation. The result is made from a unit quaternion, so it is a proper rotation for every A.
 //
-// Lanes in which H is not positive, or that are not there after the last iteration, start again from
-// Davenport's matrix (rotation_cold.h). It is rare: teleports, bodies turned inside out within a step.
+// Lanes in which H is not positive, or which have not converged after the last iteration, start again from Davenport's matrix
+// (rotation_cold.h). That is rare: after teleports, and in bodies that are turned inside out within a step.
 
 #include <spu_intrinsics.h>
 
@@ -26,20 +25,19 @@
 
 namespace softcell::spu {
 
-/// How far the iteration goes. Residuals are |axial(R^T A)| over the sum of |A|'s elements, roughly an angle.
+/// The limits of the iteration. Residuals are |axial(R^T A)| over the sum of |A|'s elements, roughly an angle.
 struct RotationEffort {
   uint32_t least;  ///< iterations that are always made
   uint32_t most;   ///< iterations after which to stop in any case, `least` or more
 };
 
-/// Two iterations, whatever the residual. Turns of 0.3 rad in one step are found to 1e-3 rad, of 0.05 to
-/// 1e-6.
+/// Always two iterations. They find a turn of 0.3 rad in one step to within 1e-3 rad, and one of 0.05 rad to within 1e-6 rad.
 constexpr RotationEffort kTwoIterations = {2, 2};
-/// As many as it takes to come below kRotationResidual: none for a body at rest.
+/// As many iterations as it takes for the residual to fall below kRotationResidual: none for a body at rest.
 constexpr RotationEffort kAdaptive = {0, 6};
 
 constexpr float kRotationResidual = 2e-6f;       ///< some roundings
-constexpr float kRotationLost = 0x1.89374cp-9f;  ///< 0.003: above it a lane starts again
+constexpr float kRotationLost = 0x1.89374cp-9f;  ///< 0.003: a lane with a larger residual starts again
 
 struct Rotation4 {
   Matrix3x4 matrix;
@@ -52,7 +50,7 @@ constexpr float kMu = 0x1.0624dep-11f;  // 0.0005, against matrices whose elemen
 constexpr float kLongestStep = 0.75f;   // of omega / 2: 1.3 rad
 constexpr int kPolishing = 6;           // iterations after a cold start
 
-/// A at one candidate rotation. `minors` belong to 2 H: its adjugate and determinant.
+/// Gradient and Hessian at one candidate rotation. The minors are those of 2 H: its adjugate and determinant.
 struct Estimate {
   Matrix3x4 r;
   Vector3x4 gradient;
@@ -83,7 +81,7 @@ __attribute__((always_inline)) inline Estimate estimate(const Matrix3x4& a, cons
   e.residual_square = dot(e.gradient, e.gradient);
   e.trace = spu_add(spu_add(sxx, syy), szz);
 
-  // 2 H. Twice, so that nothing has to be halved and its solution is omega / 2.
+  // 2 H, whose solution is omega / 2, so that nothing has to be halved.
   const vec_float4 mu = spu_splats(kMu), two = spu_splats(2.0f), two_mu = spu_splats(2 * kMu);
   const vec_float4 hxx = spu_madd(two, spu_add(syy, szz), two_mu);
   const vec_float4 hyy = spu_madd(two, spu_add(sxx, szz), two_mu);
@@ -99,13 +97,13 @@ __attribute__((always_inline)) inline Estimate estimate(const Matrix3x4& a, cons
   e.minor_zz = spu_msub(hxx, hyy, spu_mul(minus_hxy, minus_hxy));
   e.determinant = spu_msub(hxx, e.minor_xx, spu_madd(minus_hxy, e.minor_xy, spu_mul(minus_hxz, e.minor_xz)));
 
-  // The pivots h_zz, minor_xx / h_zz, determinant / minor_xx, each against half of its 2 mu.
+  // The pivots h_zz, minor_xx / h_zz and determinant / minor_xx of 2 H are at least 2 mu at the optimum; half of that is safely positive.
   e.indefinite = spu_or(spu_or(less(hzz, mu), less(e.minor_xx, spu_mul(mu, hzz))),
                         less(e.determinant, spu_mul(mu, e.minor_xx)));
   return e;
 }
 
-/// omega / 2 by Newton's method. Where H is not positive it means nothing.
+/// omega / 2 by Newton's method. Without meaning in lanes in which H is not positive.
 __attribute__((always_inline)) inline Vector3x4 newton_half(const Estimate& e) {
   const Vector3x4& g = e.gradient;
   const Vector3x4 adjugate_g = {
@@ -115,8 +113,9 @@ __attribute__((always_inline)) inline Vector3x4 newton_half(const Estimate& e) {
   return scale(adjugate_g, rough_reciprocal(e.determinant));
 }
 
-/// omega / 2 where Newton's step is none or goes too far: along the gradient, and no longer than it may be.
-/// Estimates once more, from what is in memory anyway: handed over, the estimate would go there each time.
+/// omega / 2 for lanes in which Newton's step is unusable or too long: a step along the gradient where H is not positive, and no step
+/// longer than kLongestStep. It computes the estimate again from a and q, which are in memory anyway: an estimate as an argument would be
+/// written to memory in each iteration, also in those that do not call this function.
 __attribute__((noinline)) inline Vector3x4 safe_half(const Matrix3x4& a, const Quaternion4& q) {
   const Estimate e = estimate(a, q);
   const Vector3x4 newton = newton_half(e);
@@ -140,8 +139,8 @@ __attribute__((always_inline)) inline Quaternion4 improve(const Estimate& e, con
   return turn(q, half);
 }
 
-/// Top bit set where the answer cannot be trusted.
-/// @param indefinite  what is known of H: of the same estimate, or of the one before
+/// Top bit set in lanes whose rotation cannot be trusted.
+/// @param indefinite  where H is not positive, from this estimate or the one before
 inline vec_uint4 lost(const Estimate& e, vec_uint4 indefinite) {
   return spu_or(indefinite, less(spu_splats(kRotationLost * kRotationLost), e.residual_square));
 }
@@ -162,27 +161,25 @@ __attribute__((always_inline)) inline Matrix3x4 normalise(const Matrix3x4& a, co
 
 }  // namespace rotation_detail
 
-/// Four matrices, scaled, and room for what else belongs to them. Made in the place of what they come from.
+/// Four matrices, scaled, and another vector of each region. It overwrites the sums from which it is made.
 struct __attribute__((may_alias)) RotationProblem {
   Matrix3x4 a;        ///< as normalised() makes it
-  Vector3x4 payload;  ///< not looked at
+  Vector3x4 payload;  ///< for the caller; not used here
 };
 
-/// `a` as a RotationProblem takes it: times a power of two, or zero where it is noise.
-/// @param a  any matrices of finite numbers, of any rank, either sign of the determinant. Scale: the
-/// magnitudes
-///           of the elements sum to 1e-37..1.7e38; outside it A counts as noise.
+/// Scales `a` for a RotationProblem: multiplies by a power of two, or by zero where it is noise.
+/// @param a  matrices of finite numbers, of any rank and with either sign of the determinant. If the magnitudes of a matrix's elements do
+///           not sum to 1e-37..1.7e38, it counts as noise.
 __attribute__((always_inline)) inline Matrix3x4 normalised(const Matrix3x4& a, const RotationNoise& noise) {
   return rotation_detail::normalise(a, noise);
 }
 
 namespace rotation_detail {
 
-/// One iteration of all groups, one or more.
+/// Makes one iteration for all groups, one or more.
 ///
-/// It is a chain of dependent operations and takes five times as long as its operations would. Groups do not
-/// depend on each other: each round estimates one and finishes the one before it, for the processor to
-/// overlap.
+/// The iteration of a group is a chain of dependent operations, which takes five times as long as its operations would. Groups do not
+/// depend on each other. So each round of the loop estimates one group and finishes the one before it, and the processor overlaps the two.
 __attribute__((always_inline)) inline void improve_all(const RotationProblem* problems, Quaternion4* q,
                                                        vec_uint4* indefinite, uint32_t count) {
   Estimate before = estimate(problems[0].a, q[0]);
@@ -198,10 +195,10 @@ __attribute__((always_inline)) inline void improve_all(const RotationProblem* pr
 
 }  // namespace rotation_detail
 
-/// Turns `count` groups of four quaternions towards the optima, as far as `effort` says.
-/// @param q           unit to 1e-5; in: last step's. out: unit to 5e-6.
+/// Turns `count` groups of four quaternions towards the optima, within the limits of `effort`.
+/// @param q           in: the last step's quaternions, of length one to within 1e-5; out: to within 5e-6
 /// @param count       one or more
-/// @param indefinite  out, for each group: top bit set where H was not positive at the last look
+/// @param indefinite  out, for each group: top bit set where H was not positive in the last estimate
 __attribute__((noinline)) inline void improve_rotations(const RotationProblem* problems, Quaternion4* q,
                                                         vec_uint4* indefinite, uint32_t count,
                                                         RotationEffort effort) {
@@ -216,8 +213,7 @@ __attribute__((noinline)) inline void improve_rotations(const RotationProblem* p
     for (uint32_t g = 0; g < count; ++g) {
       const Estimate e = estimate(problems[g].a, q[g]);
       indefinite[g] = e.indefinite;
-      // Lanes that are good stay as they are: what a region gets does not depend on its neighbours in a
-      // group.
+      // Lanes that are good do not change, so the result of a region does not depend on the other regions of its group.
       const vec_uint4 bad = spu_or(e.indefinite, less(good, e.residual_square));
       if (!any_negative(bad)) continue;
       q[g] = select(q[g], improve(e, problems[g].a, q[g]), negative_lanes(bad));
@@ -229,12 +225,13 @@ __attribute__((noinline)) inline void improve_rotations(const RotationProblem* p
 
 namespace rotation_detail {
 
-/// The same as a function, for what is rare.
+/// The same, not inlined, for code that seldom runs.
 __attribute__((noinline)) inline Estimate estimate_slowly(const Matrix3x4& a, const Quaternion4& q) {
   return estimate(a, q);
 }
 
-/// The lanes of `mask` from Davenport's matrix, polished. `q` as it is decides what A leaves open.
+/// Finds the rotations of the lanes in `mask` by Davenport's matrix and improves them by Newton's method. Where A does not determine the
+/// rotation, the present `q` decides.
 __attribute__((noinline)) inline Rotation4 start_again(const RotationProblem& problem, Quaternion4& q,
                                                        vec_uint4 mask) {
   const Quaternion4 found = davenport(problem.a, q);
@@ -250,12 +247,12 @@ __attribute__((noinline)) inline Rotation4 start_again(const RotationProblem& pr
 
 }  // namespace rotation_detail
 
-/// The matrices of quaternions that improve_rotations() has made. Lanes that are lost all the same start
-/// cold, and change `q`.
+/// The matrices of quaternions that improve_rotations() has made. Lanes that have not converged start again without the past; their `q`
+/// changes.
 ///
-/// Lost is what is far off, or was in a place without a minimum nearby when it was last looked at. Whether H
-/// is positive here is not asked again, which would be half of the work: from where it was, Newton's method
-/// does not come to a saddle but by a hair's breadth, and the next step's first look would find it there.
+/// These are lanes with a large residual, and lanes in which H was not positive in the last estimate. H at the present rotation is not
+/// tested, because that would be half of the work. From a place where H is positive, Newton's method hardly ever arrives exactly at a
+/// saddle; if it does, the first estimate of the next step finds that.
 __attribute__((always_inline)) inline Rotation4 rotation_of(const RotationProblem& problem, Quaternion4& q,
                                                             vec_uint4 indefinite) {
   using namespace rotation_detail;
@@ -265,8 +262,7 @@ __attribute__((always_inline)) inline Rotation4 rotation_of(const RotationProble
   return {e.r, e.residual_square};
 }
 
-/// The optimum found without trusting `q`, which decides only what the problem leaves open. Several times as
-/// slow.
+/// Finds the optimum without the past: `q` decides only what the problem does not determine. Several times as slow.
 inline Rotation4 find_rotation(const RotationProblem& problem, Quaternion4& q) {
   return rotation_detail::start_again(problem, q, spu_splats(0xFFFFFFFFu));
 }

@@ -1,12 +1,12 @@
 #pragma once
-// The rotation nearest to a matrix from nothing: the largest eigenvector of Davenport's 4x4 matrix, by Jacobi
-// rotations, four regions at a time.  [HORN87]
+// The rotation nearest to a matrix, without an estimate to begin with, for four regions at a time: the eigenvector of Davenport's 4x4
+// matrix with the largest eigenvalue, by Jacobi rotations.  [HORN87]
 //
 //   K = [ A + A^T - tr(A) 1   z     ]      z = axial(A);  q^T K q = <R(q), A> for unit q = (x, y, z, w)
 //       [ z^T                 tr(A) ]
 //
-// Slow and hardly ever run, so it is written with loops. Good to about 1e-3 rad, for Newton's method to go on
-// from: the past weighs in with 1e-4, so that what A leaves open stays as it was.
+// It is slow and seldom runs, so it is written with loops. Its result is right to about 1e-3 rad, from where Newton's method continues. The
+// rotation before has a weight of 1e-4, so that it decides what A does not determine.
 
 #include <spu_intrinsics.h>
 
@@ -50,7 +50,7 @@ inline Symmetric4 davenport_matrix(const Matrix3x4& a, const Quaternion4& before
   return k;
 }
 
-/// Cosine and sine of the rotation that makes k[p][q] vanish; the smaller of the two angles.
+/// Cosine and sine of the rotation that makes k[p][q] zero; of two such angles, the smaller one.
 struct Plane {
   vec_float4 cosine, sine;
 };
@@ -74,7 +74,7 @@ inline void turn_pair(vec_float4& a, vec_float4& b, const Plane& plane) {
   a = turned;
 }
 
-/// Leaves the eigenvalues on k's diagonal and the eigenvectors in v's columns.
+/// Diagonalises k: its diagonal becomes the eigenvalues, and v's columns the eigenvectors.
 inline void diagonalise(Symmetric4& k, Symmetric4& v) {
   for (int i = 0; i < 4; ++i)
     for (int j = 0; j < 4; ++j) v.m[i][j] = spu_splats(i == j ? 1.0f : 0.0f);
@@ -91,8 +91,8 @@ inline void diagonalise(Symmetric4& k, Symmetric4& v) {
 }
 
 /// @param a       matrices whose elements' magnitudes sum to 1..2, or 0
-/// @param before  unit quaternions to 1e-5
-/// @return        unit quaternions to 5e-6, proper for every a
+/// @param before  quaternions of length one to within 1e-5
+/// @return        quaternions of length one to within 5e-6, so a proper rotation for every a
 inline Quaternion4 davenport(const Matrix3x4& a, const Quaternion4& before) {
   Symmetric4 k = davenport_matrix(a, before), v;
   diagonalise(k, v);

@@ -37,7 +37,7 @@ static_assert(sizeof(Matrix3x4) == sizeof(RotationMatrices) && sizeof(Quaternion
               "the same bytes");
 LocalStoreMap ls;
 
-/// Groups [first, first + count), count at most kBlock.
+/// Finds the rotations of groups first to first + count - 1. @param count  at most kBlock
 void find_block(uint32_t first, uint32_t count) {
   const vec_float4 zero = spu_splats(0.0f), one = spu_splats(1.0f);
   const RotationEffort effort = {ls.job.least_iterations, ls.job.most_iterations};

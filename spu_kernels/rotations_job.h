@@ -21,11 +21,11 @@ constexpr uint32_t kRotationsMaxGroups = 256;
 struct alignas(128) RotationsJob {
   /// group_count RotationMatrices with finite elements, a multiple of 16 (128 is fastest).
   uint64_t matrices_ea;
-  uint64_t starts_ea;         ///< group_count MatchRotations, likewise aligned; unit quaternions, last step's
-  uint64_t found_ea;          ///< room for as many, likewise aligned
-  uint32_t group_count;       ///< 0..kRotationsMaxGroups
-  uint32_t repeats;           ///< how often the same is done from the start
-  uint32_t least_iterations;  ///< of each rotation; 2 and 2 for a fixed effort, 0 and 6 to go by the residual
+  uint64_t starts_ea;    ///< group_count MatchRotations, likewise aligned; unit quaternions of the last step
+  uint64_t found_ea;     ///< room for as many, likewise aligned
+  uint32_t group_count;  ///< 0..kRotationsMaxGroups
+  uint32_t repeats;      ///< how often the kernel does the same work from the beginning
+  uint32_t least_iterations;  ///< as in MatchJob
   uint32_t most_iterations;
   uint32_t pad[22];
 };

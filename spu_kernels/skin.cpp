@@ -54,7 +54,7 @@ struct alignas(128) LocalStoreMap {
 static_assert(sizeof(LocalStoreMap) <= 84 * 1024, "leaves 12 KB of the budget for code and stack");
 LocalStoreMap ls;
 
-/// Four points of the surface: positions as they are drawn, normals of any length.
+/// Four points of the surface: positions as half floats, normals of any length.
 struct Surface {
   HalfVectors position;
   Vector3x4 normal;
@@ -70,11 +70,11 @@ __attribute__((always_inline)) inline Surface surface_of(const CellPolynomial& p
           deformed_normal({x.f1, y.f1, z.f1}, {x.f2, y.f2, z.f2}, {x.f3, y.f3, z.f3}, g.normal)};
 }
 
-/// One buffer of groups, one or more, to one buffer of vertices.
+/// Makes the vertices of one buffer of groups, one or more.
 ///
-/// A group is one chain of dependent operations, some 95 cycles long on a host whose arithmetic takes 40. So
+/// A group is one chain of dependent operations: some 95 cycles on a host, where the arithmetic alone would take 40. So
 /// each pass of the loop evaluates a group and finishes the normals of the one before it, and the two
-/// overlap. Whether the next group is in the same cell is loaded a pass ahead: to load it and to branch takes an SPU 19 cycles.
+/// overlap. A pass also loads whether the next group is in the same cell, because an SPU takes 19 cycles to load that and to branch.
 template <Positions kPositions>
 void skin_chunk(const Group* groups, uint32_t count, vec_ushort8* vertices) {
   CellPolynomial p = polynomial_of(ls.corner, groups[0].corner);  // a chunk may begin in the middle of a cell
@@ -121,8 +121,8 @@ void fetch_corners() {
   get_large(ls.corner + first.count, second.ea, second.count * 16u, kTagCorners);
 }
 
-/// Waits for the corners and takes the origin off them.
-/// @return  how positions between them have to be converted
+/// Waits for the corners and subtracts the origin from them.
+/// @return  how positions between these corners have to be converted
 Positions prepare_corners() {
   wait_for_tag(kTagCorners);
   const vec_float4 origin = {ls.job.origin[0], ls.job.origin[1], ls.job.origin[2], 0.0f};

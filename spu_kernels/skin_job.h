@@ -7,7 +7,7 @@
 namespace softcell::spu {
 
 /// Four mesh vertices of one lattice cell, one 128-byte line. The embedding packs each cell's vertices into
-/// groups of four; a last group that is not full repeats its last vertex.
+/// groups of four. The last group of a cell is filled up with copies of its last vertex.
 struct alignas(128) SkinGroup {
   float xi[4];        ///< position in the cell along x, 0..1, one lane per vertex
   float eta[4];       ///< along y

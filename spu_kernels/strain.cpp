@@ -1,10 +1,10 @@
-// strain: how much a body is strained, for those who ask whether it yields or breaks.  [LSM07, fracture]
+// strain: how much a body is strained, so that the PPU knows whether it may yield or break.  [LSM07, fracture]
 //
-//   lengths   the largest | |x_to - x_from|^2 / d^2 - 1 |, d at rest: of edges, and of diagonals
-//   faces     how many of them may break:  |m_high - m_low| > (1 + stretch) spacing,  or
-//                                          |F_high - F_low| > sqrt(2) turn / pi
-//             m the mean of a cell's corners, F its mean edges over the spacing. Two rotations that are `turn` apart differ by that
-//             at least, and so does what they come from (ppu/fracture/break_test.cpp).
+//   lengths   the largest | |x_to - x_from|^2 / d^2 - 1 |, d the distance at rest: of edges, and of diagonals
+//   faces     the number of those that may break:  |m_high - m_low| > (1 + stretch) spacing,  or
+//                                                  |F_high - F_low| > sqrt(2) turn / pi
+//             m is the mean of a cell's corners, F its mean edges over the spacing. Two rotations that are `turn` apart differ by
+//             sqrt(2) turn / pi at least, and so do the F from which they come (ppu/fracture/break_test.cpp).
 //
 //   array      direction  element                      count      alignment
 //   job        in         StrainJob, 128 bytes         1          128
@@ -14,11 +14,11 @@
 //   faces      in         StrainFaces, 112 bytes       any        16
 //   result     out        StrainResult, 16 bytes       1          16
 //
-// The result is a hint: faces somewhat below their limits are reported, too, and the PPU looks closely at a body that has some. So no
-// state depends on how this kernel rounds.
+// The result is a hint: the kernel also counts faces somewhat below their limits, and the PPU computes exactly for a body that has any. So
+// no state depends on how this kernel rounds.
 //
-// Budget: 208 KB. Positions 160 KB, two buffers of 16 KB for lists, the rest for code and 1 KB of stack. A list is fetched once and is
-// read in order: any number of cells fits.
+// Budget: 208 KB. Positions 160 KB, two buffers of 16 KB for lists, the rest for code and 1 KB of stack. Lists pass through the buffers
+// once and in order, so a body may have any number of cells.
 //
 // Compiles unchanged with a real SPU g++ (7 to 9, -std=c++17).
 
@@ -61,8 +61,8 @@ struct alignas(128) LocalStoreMap {
 };
 LocalStoreMap ls;
 
-/// Of eight particles: where their positions lie, in bytes. Two multiplications find all eight places, and no halfword is extracted, which
-/// takes an SPU several instructions. With that, and without loops over corners, a face takes 40 cycles; it took 300.
+/// The offsets of eight particles' positions, in bytes. Two multiplications compute all eight; to extract halfwords would take an SPU
+/// several instructions each. With this, and without loops over corners, a face takes 40 cycles instead of 300.
 struct Places {
   __attribute__((always_inline)) explicit Places(vec_ushort8 particles)
       : even(spu_mule(particles, spu_splats(uint16_t{16}))),
@@ -76,7 +76,8 @@ struct Places {
   vec_uint4 even, odd;
 };
 
-/// x y of two particles in each quadword become x y 0 0 of one. From the last one on: what is written has been read.
+/// Makes quadwords x y 0 0 of one particle from quadwords x y x y of two, in place. It begins with the last pair, so that no quadword is
+/// overwritten before it has been read.
 void make_solid() {
   const vec_uchar16 first = {0, 1, 2, 3, 4, 5, 6, 7, 16, 17, 18, 19, 20, 21, 22, 23};
   const vec_uchar16 second = {8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23};
@@ -88,7 +89,7 @@ void make_solid() {
   }
 }
 
-/// Calls work(groups, count) for pieces of a list, one after the other. The next piece arrives during the work on one.
+/// Calls work(groups, count) for pieces of a list, one after the other. During the work on a piece the MFC fetches the next.
 template <typename Group, typename Work>
 inline void for_each_piece(uint64_t ea, uint32_t count, const Work& work) {
   constexpr uint32_t kGroups = kMaxTransferBytes / sizeof(Group);
@@ -109,7 +110,7 @@ inline void for_each_piece(uint64_t ea, uint32_t count, const Work& work) {
   }
 }
 
-/// @return  of `count` groups at `ea`: the largest change of a square
+/// @return  the largest change of a squared distance in `count` groups at `ea`
 float largest_change(uint64_t ea, uint32_t count) {
   vec_float4 largest = spu_splats(0.0f);
   for_each_piece<Lengths>(ea, count, [&](const Lengths* group, uint32_t groups) {
@@ -127,11 +128,11 @@ float largest_change(uint64_t ea, uint32_t count) {
   return largest_lane(largest);
 }
 
-/// What faces of strength s bear. Corners are summed, not averaged: middles are eight times as far from each other, edges four times as
-/// long.
+/// The limits of faces of strength s. Corners are summed and not averaged, so distances of middles are eight times as large, and edges four
+/// times as long.
 struct Limits {
-  vec_float4 middles, more_middles;  // apart: middles + s more_middles
-  vec_float4 turn, edges_of_turn;    // rad, and what edges differ by: s edges_of_turn - tolerance
+  vec_float4 middles, more_middles;  // limit of the distance of middles: middles + s more_middles
+  vec_float4 turn, edges_of_turn;    // rad; limit of the difference of edges: s edges_of_turn - tolerance
   vec_float4 tolerance;
 };
 
@@ -143,12 +144,12 @@ Limits limits_of(const StrainJob& job) {
           spu_splats(kStrainSpacings * job.spacing)};
 }
 
-/// Of one face of four: squares of how far its cells differ. Their sums over x y z count.
+/// The squared differences of the two cells of a face, by x y z; they have still to be summed.
 struct Differences {
   vec_float4 middles, edges;
 };
 
-/// @param low, between, high  of two faces   @param first  0 for the one, 4 for the other
+/// @param low, between, high  the corners of two faces   @param first  0: of the first face, 4: of the second
 template <bool kTurns>
 __attribute__((always_inline)) inline Differences differences(const Places& low, const Places& between,
                                                               const Places& high, int first) {
@@ -159,7 +160,7 @@ __attribute__((always_inline)) inline Differences differences(const Places& low,
   const vec_float4 near = spu_add(across[0], across[1]), far = spu_add(across[2], across[3]);
   const vec_float4 middles = spu_add(near, far);
   if constexpr (!kTurns) return {spu_mul(middles, middles), spu_splats(0.0f)};
-  // Edges of both cells that lie in the face are the same; of those beside it the differences are those of `across`.
+  // The cells share the edges that lie in the face. The other edges along i and j differ by differences of `across`.
   const vec_float4 i = spu_add(spu_sub(across[1], across[0]), spu_sub(across[3], across[2]));
   const vec_float4 j = spu_sub(far, near);
   const auto bend_at = [&](int k) __attribute__((always_inline)) {
@@ -171,7 +172,7 @@ __attribute__((always_inline)) inline Differences differences(const Places& low,
   return {spu_mul(middles, middles), spu_madd(i, i, spu_madd(j, j, spu_mul(along, along)))};
 }
 
-/// @return  how many of these faces may break, a count in each lane
+/// @return  the number of these faces that may break, as a count in each lane
 template <bool kTurns>
 __attribute__((noinline)) vec_uint4 count_faces(const Faces* group, uint32_t groups, const Limits& limits) {
   vec_uint4 found = spu_splats(0u);

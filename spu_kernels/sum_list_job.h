@@ -2,10 +2,9 @@
 // Definitions shared by the plans of match, match_2d and match_tiles: groups of four, whole lines, and sum
 // lists. Plain data, the same bytes for both sides.
 //
-// A kernel works on two buffers of slots: a slot is the payload of a particle, a bar, a plate or a region,
-// some quadwords. Slot 0 is always zero. A sum list is a sequence of halfwords and makes slots 1, 2, 3, ...
-// of one buffer from slots of the other, whose numbers are written as offsets in words, which reach
-// all of a local store:
+// A kernel works on two buffers of slots. A slot is some quadwords: the payload of a particle, a bar, a plate or a region.
+// Slot 0 is always zero. A sum list is a sequence of halfwords. It makes slots 1, 2, 3, ...
+// of one buffer from slots of the other. It names them by offsets in words, which reach all of a local store:
 //
 //     chain:  terms (1 or more), growing, sliding, shrinking (0 or more each),
 //             terms x offset                the first sum is that of these slots; each further one is the
@@ -17,8 +16,8 @@
 //             sums x (offset, offset, offset)  each is the first slot, plus the second, minus the third
 //     end:    0
 //
-// A chain is a window that slides along a row, from before its begin to past its end. A run continues a chain
-// that began in another list; only the lists of match_tiles have runs.
+// A chain is a window that slides along a row, from before its beginning to past its end. A run continues a chain
+// of another list; only the lists of match_tiles have runs.
 
 #include <stdint.h>
 

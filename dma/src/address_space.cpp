@@ -96,7 +96,7 @@ EffectiveAddress AddressSpace::local_store_ea(int spe) const {
   return local_stores_->ea_of(spe);
 }
 
-std::byte* AddressSpace::place_of_local_store(int spe) const {
+std::byte* AddressSpace::host_address_of_local_store(int spe) const {
   return is_host_program() ? reinterpret_cast<std::byte*>(local_store_ea(spe).value) : nullptr;
 }
 
@@ -178,8 +178,8 @@ void AddressSpace::map_local_store(int spe, LocalStorePort& port) {
   SC_ASSERT(reinterpret_cast<std::uintptr_t>(bytes.data()) % kQuadwordBytes == 0,
             "{} is at {} of the host, not at a quadword", what, bytes.data());
   const EffectiveAddress ea = local_store_ea(spe);
-  SC_ASSERT(!is_host_program() || bytes.data() == place_of_local_store(spe), "{} lies at {} of the host",
-            what, static_cast<const void*>(bytes.data()));
+  SC_ASSERT(!is_host_program() || bytes.data() == host_address_of_local_store(spe),
+            "{} lies at {} of the host", what, static_cast<const void*>(bytes.data()));
   const Mapping mapping{
       .ea = ea, .bytes = bytes.size(), .host = bytes.data(), .spe_access = SpeAccess::kReadWrite};
   const std::lock_guard lock(registry_mutex_);

@@ -87,7 +87,7 @@ void Mfc::begin_job(std::uint64_t job_id) {
   atomic_status_.reset();
   events_ = 0;
   suspended_by_.reset();
-  port_.give_up_reservation();
+  port_.release_reservation();
   random_ = RandomStream(schedule_.seed, job_id);
 }
 

@@ -148,7 +148,7 @@ struct Reservations::State {
   int take_place(ReservationListener* listener);
   void leave_place(int place);
 
-  void give_up(int place);
+  void release(int place);
   void lose_reservations_of_others(std::uint64_t line, int writer);
   void lose_reservations(std::uint64_t line, int writer);
 
@@ -203,7 +203,7 @@ int Reservations::State::take_place(ReservationListener* listener) {
 }
 
 void Reservations::State::leave_place(int place) {
-  give_up(place);
+  release(place);
   const std::lock_guard lock(places_mutex);
   SC_ASSERT(places_taken[static_cast<std::size_t>(place)], "holder {} is gone already", place);
   places_taken.reset(static_cast<std::size_t>(place));
@@ -211,7 +211,7 @@ void Reservations::State::leave_place(int place) {
 
 // With the lock of the line that was reserved last: whoever loses it to a write tells so with that lock held,
 // so that the listener hears nothing of it afterwards.
-void Reservations::State::give_up(int place) {
+void Reservations::State::release(int place) {
   Reservation& own = reservations[place];
   if (own.last_line == kNoLine) return;
   const std::lock_guard lock(lock_of(own.last_line));
@@ -292,7 +292,7 @@ void Reservations::load_and_reserve(ReservationHolder& holder, EffectiveAddress 
   SC_ASSERT(is_reserving_access(ea, bytes), "{} bytes at {}", bytes, ea);
   const std::uint64_t line = line_of(ea);
   State::Reservation& own = state_->reservations[holder.place_];
-  if (own.last_line != line) state_->give_up(holder.place_);
+  if (own.last_line != line) state_->release(holder.place_);
   const std::lock_guard lock(state_->lock_of(line));
   own.last_line = line;
   own.line.store(line, std::memory_order_seq_cst);
@@ -312,7 +312,7 @@ bool Reservations::store_conditional(ReservationHolder& holder, EffectiveAddress
   const std::uint64_t line = line_of(ea);
   State::Reservation& own = state_->reservations[holder.place_];
   if (own.last_line != line) {
-    state_->give_up(holder.place_);
+    state_->release(holder.place_);
     return false;
   }
   const std::lock_guard lock(state_->lock_of(line));
@@ -376,7 +376,7 @@ void Reservations::write(ReservationHolder& holder, EffectiveAddress ea, std::by
   });
 }
 
-void Reservations::give_up(ReservationHolder& holder) { state_->give_up(holder.place_); }
+void Reservations::release(ReservationHolder& holder) { state_->release(holder.place_); }
 
 void Reservations::look_for_host_stores(ReservationHolder& holder) {
   if (!state_->is_host_program()) return;

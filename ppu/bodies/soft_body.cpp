@@ -34,6 +34,18 @@ Matrix3d matrix_of(const Eigen::Quaternionf& rotation) {
   return rotation.normalized().toRotationMatrix().cast<double>();
 }
 
+/// Checks values that the user sets for all particles. @param one,many  the name of such a value, for messages
+/// @throws std::runtime_error  there are more or fewer values than particles, or one is not finite
+template <class Vector>
+void check_values(std::span<const Vector> values, std::size_t particles, const std::string& one,
+                  const std::string& many) {
+  const std::string body = "a soft body of " + base::counted(particles, "particle") + " was given ";
+  if (values.size() != particles) throw std::runtime_error(body + base::counted(values.size(), one, many));
+  for (std::size_t i = 0; i < particles; ++i)
+    if (!values[i].allFinite())
+      throw std::runtime_error(body + "a " + one + " that is not finite, for particle " + std::to_string(i));
+}
+
 /// Sums over the body in double precision, so that positions far from the origin lose no accuracy.
 template <int kDimension>
 struct Motion {
@@ -306,18 +318,14 @@ auto SoftBody<kDimension>::own_rest() const -> std::span<const Vector> {
 
 template <int kDimension>
 void SoftBody<kDimension>::set_rest_positions(std::span<const Vector> rest) {
-  if (rest.size() != x_.size())
-    throw std::runtime_error("a soft body of " + base::counted(x_.size(), "particle") + " was given " +
-                             base::counted(rest.size(), "position") + " at rest");
-  for (const Vector& position : rest)
-    if (!position.allFinite()) throw std::runtime_error("a soft body's rest shape is not finite");
+  check_values(rest, x_.size(), "position at rest", "positions at rest");
   std::unique_ptr<RestShape> own = rest_of(rest);
   if (const std::size_t bad = own->flow->cells_that_contacts_hold())
     throw std::runtime_error("in a soft body's rest shape " + base::counted(bad, "cell") + " of " +
                              std::to_string(model_->lattice().cells.size()) + (bad == 1 ? " is" : " are") +
                              " flat, inside out, or smaller than half of the cell in the model; contacts "
                              "would push back such cells in each step");
-  take_rest(std::move(own));
+  adopt_rest(std::move(own));
 }
 
 template <int kDimension>
@@ -328,7 +336,7 @@ auto SoftBody<kDimension>::rest_of(std::span<const Vector> positions) const -> s
 }
 
 template <int kDimension>
-void SoftBody<kDimension>::take_rest(std::unique_ptr<RestShape> rest) {
+void SoftBody<kDimension>::adopt_rest(std::unique_ptr<RestShape> rest) {
   rest->shape = RestShape::shape_of(*rest->flow, *model_->plan());
   set_rest(std::move(rest));
   ++revision_;
@@ -344,7 +352,7 @@ void SoftBody<kDimension>::flow(float step, std::optional<float> stretch) {
   SC_ASSERT(step > 0 && std::isfinite(step), "a time step of {} s", step);
   if (!settings_.plasticity) return;
   ++steps_since_look_;
-  if (rest_ && steps_since_look_ >= kFlowSteps) take_flow();
+  if (rest_ && steps_since_look_ >= kFlowSteps) read_flow();
   if (steps_since_look_ < kPlasticSteps) return;
   steps_since_look_ = 0;
   if (!rest_) rest_ = std::make_unique<RestShape>(*model_);
@@ -374,7 +382,7 @@ void SoftBody<kDimension>::flow(float step, std::optional<float> stretch) {
 
 /// Updates the constants of shape matching to the rest shape.
 template <int kDimension>
-void SoftBody<kDimension>::take_flow() {
+void SoftBody<kDimension>::read_flow() {
   SC_ASSERT(rest_ != nullptr, "a body of {} particles was never looked at", x_.size());
   if (!rest_->next.valid()) return;
   rest_->wait();
@@ -411,7 +419,7 @@ void SoftBody<kDimension>::inherit_state(const SoftBody& whole, std::span<const 
   if (!whole.has_own_rest()) return;
   std::vector<Vector> rest;
   for (const std::uint32_t particle : particle_of) rest.push_back(whole.own_rest()[particle]);
-  take_rest(rest_of(rest));
+  adopt_rest(rest_of(rest));
 }
 
 template <int kDimension>
@@ -495,15 +503,8 @@ void SoftBody<kDimension>::translate(const Vector& by) {
 
 template <int kDimension>
 void SoftBody<kDimension>::set_state(std::span<const Vector> positions, std::span<const Vector> velocities) {
-  if (positions.size() != x_.size() || velocities.size() != x_.size())
-    throw std::runtime_error("a soft body of " + base::counted(x_.size(), "particle") + " was given " +
-                             base::counted(positions.size(), "position") + " and " +
-                             base::counted(velocities.size(), "velocity", "velocities"));
-  for (std::size_t i = 0; i < x_.size(); ++i) {
-    if (!positions[i].allFinite() || !velocities[i].allFinite())
-      throw std::runtime_error("a soft body was given a state whose particle " + std::to_string(i) + " of " +
-                               std::to_string(x_.size()) + " is not finite");
-  }
+  check_values(positions, x_.size(), "position", "positions");
+  check_values(velocities, x_.size(), "velocity", "velocities");
   for (std::size_t i = 0; i < x_.size(); ++i) set_particle(i, positions[i], velocities[i]);
   forget_rotations();
   lost_->forget();

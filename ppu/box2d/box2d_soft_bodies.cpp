@@ -24,6 +24,7 @@
 #include "ppu/box2d/parting_pieces.h"
 #include "ppu/box2d/rest.h"
 #include "ppu/box2d/surface_contacts_2d.h"
+#include "ppu/contacts/crushed_cells.h"
 #include "ppu/surfaces/way_in_box.h"
 #include "softcell/base/assert.h"
 #include "softcell/base/text.h"
@@ -504,5 +505,9 @@ std::optional<SoftRayHit2d> Box2dSoftBodies::cast_ray(const Eigen::Vector2f& fro
 }
 
 SoftBodyTimes Box2dSoftBodies::times() const { return impl_->times; }
+
+CrushedCellCount Box2dSoftBodies::crushed_cells() const {
+  return impl_->surfaces ? count_crushed_cells(impl_->bodies) : CrushedCellCount();
+}
 
 }  // namespace softcell::ppu

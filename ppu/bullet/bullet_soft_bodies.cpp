@@ -444,16 +444,7 @@ std::optional<SoftRayHit> BulletSoftBodies::cast_ray(const Eigen::Vector3f& from
   return nearest;
 }
 
-CrushedCellCount BulletSoftBodies::crushed_cells() const {
-  CrushedCellCount all;
-  for (const SurfaceBody* const body : impl_->with_surfaces) {
-    const CrushedCellCount of_body =
-        count_crushed_cells(body->soft().model().lattice(), body->soft().positions());
-    all.crushed += of_body.crushed;
-    all.inside_out += of_body.inside_out;
-  }
-  return all;
-}
+CrushedCellCount BulletSoftBodies::crushed_cells() const { return count_crushed_cells(impl_->with_surfaces); }
 
 SoftBodyTimes BulletSoftBodies::times() const { return impl_->times; }
 

@@ -116,7 +116,8 @@ struct BulletWorld::Impl {
     }
   }
 
-  void put(btRigidBody& body, const btTransform& pose, const btVector3& velocity, const btVector3& turn) {
+  void teleport(btRigidBody& body, const btTransform& pose, const btVector3& velocity,
+                const btVector3& turn) {
     body.setWorldTransform(pose);
     body.setInterpolationWorldTransform(pose);
     body.setLinearVelocity(velocity);
@@ -203,10 +204,11 @@ void BulletWorld::move_to(std::size_t body, const Eigen::Vector3f& position,
   rigid.end = transform_of(position, rotation) * rigid.inner;
 }
 
-void BulletWorld::put(std::size_t body, const Eigen::Vector3f& position, const Eigen::Quaternionf& rotation) {
+void BulletWorld::teleport(std::size_t body, const Eigen::Vector3f& position,
+                           const Eigen::Quaternionf& rotation) {
   move_to(body, position, rotation);
   RigidBody& rigid = impl_->bodies.at(body);
-  impl_->put(*rigid.body, rigid.end, {0, 0, 0}, {0, 0, 0});
+  impl_->teleport(*rigid.body, rigid.end, {0, 0, 0}, {0, 0, 0});
 }
 
 void BulletWorld::add_hinge(const Hinge& hinge) {
@@ -247,7 +249,7 @@ std::size_t BulletWorld::add_convex(const TriangleMesh& mesh, const Eigen::Vecto
 
 void BulletWorld::reset() {
   for (RigidBody& rigid : impl_->bodies) {
-    impl_->put(*rigid.body, rigid.start, {0, 0, 0}, {0, 0, 0});
+    impl_->teleport(*rigid.body, rigid.start, {0, 0, 0}, {0, 0, 0});
     rigid.end = rigid.start;
   }
 }
@@ -263,12 +265,12 @@ BulletWorld::Motion BulletWorld::motion(std::size_t body) const {
           .angular_velocity = to_eigen(rigid.getAngularVelocity())};
 }
 
-void BulletWorld::put(std::size_t body, const Motion& motion) {
+void BulletWorld::teleport(std::size_t body, const Motion& motion) {
   SC_ASSERT(moves(body), "rigid body {} does not move, and is put elsewhere", body);
   const Eigen::Quaternionf& q = motion.rotation;
   SC_ASSERT(std::abs(q.norm() - 1) < 1e-3f, "a rotation of rigid body {} has the length {}", body, q.norm());
-  impl_->put(*impl_->bodies.at(body).body, transform_of(motion.position, q), to_bullet(motion.velocity),
-             to_bullet(motion.angular_velocity));
+  impl_->teleport(*impl_->bodies.at(body).body, transform_of(motion.position, q), to_bullet(motion.velocity),
+                  to_bullet(motion.angular_velocity));
 }
 
 Eigen::Matrix4f BulletWorld::pose(std::size_t body) const {

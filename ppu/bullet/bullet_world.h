@@ -58,7 +58,7 @@ class BulletWorld {
   /// @param rotation  of unit length  @pre it was added with is_moved; all numbers are finite
   void move_to(std::size_t body, const Eigen::Vector3f& position, const Eigen::Quaternionf& rotation);
   /// Places it there now, without a motion. @pre as above
-  void put(std::size_t body, const Eigen::Vector3f& position, const Eigen::Quaternionf& rotation);
+  void teleport(std::size_t body, const Eigen::Vector3f& position, const Eigen::Quaternionf& rotation);
 
   /// Joins two bodies so that they only rotate against each other about an axis. They do not collide with each other.
   struct Hinge {
@@ -84,7 +84,7 @@ class BulletWorld {
   bool moves(std::size_t body) const;  ///< whether its mass is above 0
   Motion motion(std::size_t body) const;
   /// Puts a body elsewhere, with the given velocities. Its contacts are found anew. @pre moves(body); the rotation has unit length
-  void put(std::size_t body, const Motion& motion);
+  void teleport(std::size_t body, const Motion& motion);
 
   btRigidBody& rigid_body(std::size_t body);  ///< for what is not offered here
   std::size_t rigid_bodies() const;

@@ -11,6 +11,7 @@
 namespace softcell::ppu {
 namespace {
 
+using Eigen::Vector2f;
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
@@ -46,6 +47,23 @@ Edges edges_of(const Place& place) {
 Edges edges_in(std::span<const Vector3f> positions, float spacing,
                const std::array<std::uint32_t, 8>& corners) {
   return edges_of([&](unsigned k) -> Vector3f { return positions[corners[k]] / spacing; });
+}
+
+/// The volume of a cell, as a share of that at rest.
+float volume_in(std::span<const Vector3f> positions, float spacing,
+                const std::array<std::uint32_t, 8>& corners) {
+  return edges_in(positions, spacing, corners).volume();
+}
+/// The area of a cell in two dimensions, that of the parallelogram of its mean edges, as a share of that at rest.
+float volume_in(std::span<const Vector2f> positions, float spacing,
+                const std::array<std::uint32_t, 4>& corners) {
+  Vector2f x = Vector2f::Zero(), y = Vector2f::Zero();
+  for (unsigned k = 0; k < 4; ++k) {
+    const Vector2f p = positions[corners[k]] / spacing;
+    x += 0.5f * side(k, 0) * p;
+    y += 0.5f * side(k, 1) * p;
+  }
+  return x.x() * y.y() - x.y() * y.x();
 }
 
 Edges edges_at_beginning(const ContactBody& body, const std::array<std::uint32_t, 8>& corners) {
@@ -91,17 +109,22 @@ float volume_of_cell(const ContactBody& body, std::uint32_t cell) {
   return edges_at_beginning(body, body.lattice().corners[cell]).volume();
 }
 
-CrushedCellCount count_crushed_cells(const Lattice<3>& lattice, std::span<const Vector3f> positions) {
+template <int kDimension>
+CrushedCellCount count_crushed_cells(const Lattice<kDimension>& lattice,
+                                     std::span<const typename Lattice<kDimension>::Position> positions) {
   SC_ASSERT(positions.size() == lattice.particles.size(), "{} positions of {} particles", positions.size(),
             lattice.particles.size());
   CrushedCellCount count;
   for (const auto& corners : lattice.corners) {
-    const float volume = edges_in(positions, lattice.spacing, corners).volume();
+    const float volume = volume_in(positions, lattice.spacing, corners);
     if (volume < kLeastVolume) ++count.crushed;
     if (volume < 0) ++count.inside_out;
   }
   return count;
 }
+
+template CrushedCellCount count_crushed_cells<2>(const Lattice<2>&, std::span<const Eigen::Vector2f>);
+template CrushedCellCount count_crushed_cells<3>(const Lattice<3>&, std::span<const Vector3f>);
 
 /// The places where particles would be at the end, in cells.
 void CrushedCells::place_ends(const ContactBody& body, float step) {

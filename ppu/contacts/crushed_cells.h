@@ -23,7 +23,22 @@ float volume_of_cell(const ContactBody& body, std::uint32_t cell);
 
 /// Counts the crushed cells of a body between substeps.
 /// @param positions  of the lattice's particles
-CrushedCellCount count_crushed_cells(const Lattice<3>& lattice, std::span<const Eigen::Vector3f> positions);
+template <int kDimension>
+CrushedCellCount count_crushed_cells(const Lattice<kDimension>& lattice,
+                                     std::span<const typename Lattice<kDimension>::Position> positions);
+
+/// The same for all bodies of a coupling. @param bodies  pointers to what has a soft()
+template <class Bodies>
+CrushedCellCount count_crushed_cells(const Bodies& bodies) {
+  CrushedCellCount all;
+  for (const auto& body : bodies) {
+    const CrushedCellCount of_body =
+        count_crushed_cells(body->soft().model().lattice(), body->soft().positions());
+    all.crushed += of_body.crushed;
+    all.inside_out += of_body.inside_out;
+  }
+  return all;
+}
 
 /// Used by one thread. Allocates when there are more particles, or more crushed cells, than ever before.
 class CrushedCells {

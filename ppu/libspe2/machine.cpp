@@ -95,7 +95,7 @@ void Machine::report(const dma::Fault& fault) {
 }
 
 void Machine::count_last(ls_sim::SpeContext& context) {
-  if (!context.state().runs) context.give_up();
+  if (!context.state().runs) context.end_run();
   const ls_sim::SpeStatistics statistics = context.statistics();
   commands_.fetch_add(statistics.dma.commands(), std::memory_order_relaxed);
   bytes_.fetch_add(statistics.dma.bytes(), std::memory_order_relaxed);

@@ -241,7 +241,7 @@ void SpeSolver<kDimension>::inherit_state(const Body& whole, const Body& piece,
 
 /// Also drops prepared places of models that can have no more bodies.
 template <int kDimension>
-void SpeSolver<kDimension>::take_prepared(Known& known, std::span<Body* const> bodies) {
+void SpeSolver<kDimension>::adopt_prepared(Known& known, std::span<Body* const> bodies) {
   std::unordered_set<const SoftBodyModel<kDimension>*> models;
   for (const Body* const body : bodies) models.insert(body->shared_model().get());
   const std::lock_guard lock(preparing_);
@@ -256,7 +256,7 @@ void SpeSolver<kDimension>::take_prepared(Known& known, std::span<Body* const> b
 
 /// Copies rotations from the old layout of memory to the new one.
 template <int kDimension>
-void SpeSolver<kDimension>::take_over(Member& member, Member& old) {
+void SpeSolver<kDimension>::adopt(Member& member, Member& old) {
   SC_ASSERT(member.group->model == old.group->model, "a body of {} particles has changed its model",
             member.group->model->particles());
   const auto& bodies = member.group->bodies;
@@ -285,7 +285,7 @@ void SpeSolver<kDimension>::regroup(std::span<Body* const> bodies) {
   Known known;
   for (Member& member : members_) known.members.emplace(member.body, &member);
   for (const auto& group : groups_) known.plans.emplace(group->model.get(), group->plans);
-  take_prepared(known, bodies);
+  adopt_prepared(known, bodies);
   std::vector<std::unique_ptr<Group>> groups;
   std::vector<Member> members;
   std::unordered_map<const SoftBodyModel<kDimension>*, Group*> with_models_plan;
@@ -324,7 +324,7 @@ void SpeSolver<kDimension>::regroup(std::span<Body* const> bodies) {
   }
   chain_.reserve(jobs);
   for (Member& member : members)
-    if (Member* const old = known.find(member)) take_over(member, *old);
+    if (Member* const old = known.find(member)) adopt(member, *old);
   chain_.wait();  // for a step that was dropped: its jobs use memory that is freed now
   chain_.clear();
   groups_ = std::move(groups);
@@ -366,7 +366,7 @@ bool SpeSolver<kDimension>::may_break(const Body& body) const {
 
 /// Copies positions and velocities to main memory.
 template <int kDimension>
-void SpeSolver<kDimension>::hand_over(Member& member) {
+void SpeSolver<kDimension>::upload(Member& member) {
   using Kernel = MatchKernel<kDimension>;
   const Body& body = *member.body;
   Group& group = *member.group;
@@ -410,7 +410,7 @@ void SpeSolver<kDimension>::kick(std::span<Body* const> bodies, float step) {
     member.stepped = member.fits_spes();
     if (member.group->own_plan || member.tiled) follow_rest(member);
     if (member.stepped)
-      hand_over(member);
+      upload(member);
     else
       left_to_ppu_.push_back(member.body);
   }
@@ -432,7 +432,7 @@ void SpeSolver<kDimension>::kick(std::span<Body* const> bodies, float step) {
 
 /// Copies velocities from main memory.
 template <int kDimension>
-void SpeSolver<kDimension>::take_back(const Member& member) {
+void SpeSolver<kDimension>::read_back(const Member& member) {
   using Kernel = MatchKernel<kDimension>;
   Body& body = *member.body;
   if (member.group->bodies) {
@@ -467,7 +467,7 @@ void SpeSolver<kDimension>::finish() {
     if (member.stepped && member.tiled) member.tiled->end_step();
   for (const Member& member : members_) {
     if (!member.stepped) continue;
-    take_back(member);
+    read_back(member);
     const auto& looks = member.group->looks;
     member.body->flow(step_, looks ? looks->stretch(member.number) : std::nullopt);
   }

@@ -42,36 +42,30 @@ void link(const GladGLContext& gl, const GlObject& program, std::initializer_lis
   for (const GLuint shader : shaders) gl.DetachShader(program.name(), shader);
 }
 
+/// Makes one object by OpenGL's functions that make and delete several.
+template <auto kGenerate, auto kDelete>
+GlObject make_object(const GladGLContext& gl) {
+  GLuint name = 0;
+  (gl.*kGenerate)(1, &name);
+  return {gl, name, [](const GladGLContext& g, GLuint n) { (g.*kDelete)(1, &n); }};
+}
+
 }  // namespace
 
 GlObject make_buffer(const GladGLContext& gl) {
-  GLuint name = 0;
-  gl.GenBuffers(1, &name);
-  return {gl, name, [](const GladGLContext& g, GLuint n) { g.DeleteBuffers(1, &n); }};
+  return make_object<&GladGLContext::GenBuffers, &GladGLContext::DeleteBuffers>(gl);
 }
-
 GlObject make_vertex_array(const GladGLContext& gl) {
-  GLuint name = 0;
-  gl.GenVertexArrays(1, &name);
-  return {gl, name, [](const GladGLContext& g, GLuint n) { g.DeleteVertexArrays(1, &n); }};
+  return make_object<&GladGLContext::GenVertexArrays, &GladGLContext::DeleteVertexArrays>(gl);
 }
-
 GlObject make_texture(const GladGLContext& gl) {
-  GLuint name = 0;
-  gl.GenTextures(1, &name);
-  return {gl, name, [](const GladGLContext& g, GLuint n) { g.DeleteTextures(1, &n); }};
+  return make_object<&GladGLContext::GenTextures, &GladGLContext::DeleteTextures>(gl);
 }
-
 GlObject make_renderbuffer(const GladGLContext& gl) {
-  GLuint name = 0;
-  gl.GenRenderbuffers(1, &name);
-  return {gl, name, [](const GladGLContext& g, GLuint n) { g.DeleteRenderbuffers(1, &n); }};
+  return make_object<&GladGLContext::GenRenderbuffers, &GladGLContext::DeleteRenderbuffers>(gl);
 }
-
 GlObject make_framebuffer(const GladGLContext& gl) {
-  GLuint name = 0;
-  gl.GenFramebuffers(1, &name);
-  return {gl, name, [](const GladGLContext& g, GLuint n) { g.DeleteFramebuffers(1, &n); }};
+  return make_object<&GladGLContext::GenFramebuffers, &GladGLContext::DeleteFramebuffers>(gl);
 }
 
 GlObject make_program(const GladGLContext& gl, std::initializer_list<const char*> vertex_parts,

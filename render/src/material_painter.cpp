@@ -15,26 +15,11 @@ constexpr GLint kBaseUnit = 1, kMetallicRoughnessUnit = 2, kNormalUnit = 3,
                 kEmissionUnit = 4;  // the shadow map has unit 0
 
 constexpr char kMaterialVertex[] = R"glsl(
-layout(location = 0) in vec3 vertex_position;
-layout(location = 1) in vec3 vertex_normal;
-layout(location = 2) in vec2 vertex_texture;
 layout(location = 3) in vec4 vertex_colour;
-uniform mat4 model;
-uniform mat3 normal_matrix;
-out vec3 position;
-out vec3 normal;
-out vec3 shadow_position;
-out vec2 texture_position;
 out vec4 tint;
 void main() {
-  vec4 world = model * vec4(vertex_position, 1.0);
-  position = world.xyz;
-  normal = normalize(normal_matrix * vertex_normal);
-  texture_position = vertex_texture;
+  place_vertex();
   tint = vertex_colour;
-  vec3 lifted = position + normal * shadow_texel.y;  // as in kSurfaceVertex
-  shadow_position = 0.5 * (light_projection * vec4(lifted, 1.0)).xyz + 0.5;
-  gl_Position = view_projection * world;
 }
 )glsl";
 
@@ -162,7 +147,7 @@ const char* if_defined(bool wanted, const char* definition) { return wanted ? de
 struct MaterialPainter::Program {
   Program(const GladGLContext& gl, const Material& material, const char* sun, GLuint frame_binding)
       : object(make_program(
-            gl, {kShaderFrame, kMaterialVertex},
+            gl, {kShaderFrame, kPlacedVertex, kMaterialVertex},
             {kShaderFrame, if_defined(material.base_texture.has_value(), "#define BASE_TEXTURE\n"),
              if_defined(material.vertex_colours, "#define VERTEX_COLOURS\n"),
              if_defined(material.metallic_roughness_texture.has_value(),

@@ -87,20 +87,11 @@ void MeshStore::filled(MeshId id, std::size_t bytes) {
   uploaded_bytes_ += bytes;
 }
 
-const MeshBuffers& MeshStore::mesh(MeshId id) const {
-  if (const MeshBuffers* const found = skinned_.find(id.value)) return *found;
-  throw std::invalid_argument("no mesh " + std::to_string(id.value));
-}
+const MeshBuffers& MeshStore::mesh(MeshId id) const { return skinned_.at(id); }
 
-const MeshBuffers& MeshStore::mesh(StaticMeshId id) const {
-  if (const MeshBuffers* const found = statics_.find(id.value)) return *found;
-  throw std::invalid_argument("no static mesh " + std::to_string(id.value));
-}
+const MeshBuffers& MeshStore::mesh(StaticMeshId id) const { return statics_.at(id); }
 
-const GlObject& MeshStore::texture(TextureId id) const {
-  if (const GlObject* const found = textures_.find(id.value)) return *found;
-  throw std::invalid_argument("no texture " + std::to_string(id.value));
-}
+const GlObject& MeshStore::texture(TextureId id) const { return textures_.at(id); }
 
 template <class Value>
 void MeshStore::set_attribute(const MeshBuffers& buffers, std::optional<GlObject>& buffer, GLuint attribute,
@@ -127,25 +118,22 @@ template void MeshStore::set_attribute(const MeshBuffers&, std::optional<GlObjec
 
 MeshId MeshStore::add_mesh(std::span<const std::uint32_t> indices) {
   context_.make_current();
-  return {skinned_.add(make_skinned_mesh(indices))};
+  return skinned_.add(make_skinned_mesh(indices));
 }
 
 void MeshStore::remove_mesh(MeshId id) {
-  mesh(id);
   context_.make_current();
-  skinned_.remove(id.value);
+  skinned_.remove(id);
 }
 
 void MeshStore::remove_static_mesh(StaticMeshId id) {
-  mesh(id);
   context_.make_current();
-  statics_.remove(id.value);
+  statics_.remove(id);
 }
 
 void MeshStore::remove_texture(TextureId id) {
-  texture(id);
   context_.make_current();
-  textures_.remove(id.value);
+  textures_.remove(id);
 }
 
 void MeshStore::update_mesh(MeshId id, std::span<const std::byte> vertices) {
@@ -180,7 +168,7 @@ MeshId MeshStore::add_cell_mesh(std::span<const std::uint32_t> indices, std::spa
   gl_.BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(bytes_of(vertices.size(), kSkinnedVertexBytes)),
                  nullptr, GL_STREAM_COPY);
   buffers.cells.emplace(gl_, vertices, corner_count);
-  return {skinned_.add(std::move(buffers))};
+  return skinned_.add(std::move(buffers));
 }
 
 void MeshStore::update_corners(MeshId id, std::span<const std::byte> corners, const Eigen::Vector3f& origin) {
@@ -221,7 +209,7 @@ TextureId MeshStore::add_texture(const Image& picture, const TextureSettings& se
   gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, wrap_mode(settings.wrap_u));
   gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, wrap_mode(settings.wrap_v));
   gl_.ActiveTexture(GL_TEXTURE0);
-  return {textures_.add(std::move(texture))};
+  return textures_.add(std::move(texture));
 }
 
 void MeshStore::set_rest_shape(MeshId id, std::span<const Eigen::Vector3f> positions,
@@ -271,7 +259,7 @@ StaticMeshId MeshStore::add_static_mesh(std::span<const Eigen::Vector3f> positio
     buffers.radius = 0.5f * box.diagonal().norm();
     add_levels(buffers, positions, normals);
   }
-  return {statics_.add(std::move(buffers))};
+  return statics_.add(std::move(buffers));
 }
 
 }  // namespace softcell::render

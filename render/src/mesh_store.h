@@ -107,14 +107,8 @@ class MeshStore {
   void add_levels(MeshBuffers& buffers, std::span<const Eigen::Vector3f> positions,
                   std::span<const Eigen::Vector3f> normals) const;
   void filled(MeshId id, std::size_t bytes);
-  MeshBuffers& mesh_to_change(MeshId id) {
-    mesh(id);
-    return *skinned_.find(id.value);
-  }
-  MeshBuffers& mesh_to_change(StaticMeshId id) {
-    mesh(id);
-    return *statics_.find(id.value);
-  }
+  MeshBuffers& mesh_to_change(MeshId id) { return skinned_.at(id); }
+  MeshBuffers& mesh_to_change(StaticMeshId id) { return statics_.at(id); }
   template <class Value>
   void set_attribute(const MeshBuffers& buffers, std::optional<GlObject>& buffer, GLuint attribute,
                      std::span<const Value> values, const char* what) const;
@@ -123,8 +117,9 @@ class MeshStore {
   const GladGLContext& gl_;
   bool with_levels_;
   std::unique_ptr<CellSkinner> skinner_;  // made when it is first asked for
-  Numbered<MeshBuffers> skinned_, statics_;
-  Numbered<GlObject> textures_;
+  Numbered<MeshId, MeshBuffers> skinned_{"mesh"};
+  Numbered<StaticMeshId, MeshBuffers> statics_{"static mesh"};
+  Numbered<TextureId, GlObject> textures_{"texture"};
   std::uint64_t uploaded_bytes_ = 0;
 };
 

@@ -112,18 +112,12 @@ Shape2dId Painter2d::add_shape(std::span<const std::array<std::uint32_t, 3>> tri
   gl_.BindBuffer(GL_ELEMENT_ARRAY_BUFFER, shape.indices.name());
   gl_.BufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(triangles.size_bytes()), triangles.data(),
                  GL_STATIC_DRAW);
-  return {shapes_.add(std::move(shape))};
+  return shapes_.add(std::move(shape));
 }
 
-const Painter2d::Triangles& Painter2d::triangles_of(Shape2dId shape) const {
-  if (const Triangles* const found = shapes_.find(shape.value)) return *found;
-  throw std::invalid_argument("no shape " + std::to_string(shape.value));
-}
+const Painter2d::Triangles& Painter2d::triangles_of(Shape2dId shape) const { return shapes_.at(shape); }
 
-void Painter2d::remove_shape(Shape2dId shape) {
-  triangles_of(shape);
-  shapes_.remove(shape.value);
-}
+void Painter2d::remove_shape(Shape2dId shape) { shapes_.remove(shape); }
 
 void Painter2d::check(const Frame2d& frame) const {
   for (const Shape2d& shape : frame.shapes) {

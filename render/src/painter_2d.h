@@ -91,7 +91,7 @@ class Painter2d {
   const GladGLContext& gl_;
   Program shape_, textured_shape_, mask_, textured_mask_, blur_, paper_, stroke_;
   GlObject shape_layout_, shape_vertices_, stroke_layout_, stroke_vertices_, stroke_indices_, empty_layout_;
-  Numbered<Triangles> shapes_;
+  Numbered<Shape2dId, Triangles> shapes_{"shape"};
 
   // The shadow: what casts it in half the picture's resolution, and blurred along x and y in a quarter.
   Target mask_target_, blurred_along_x_, blurred_;

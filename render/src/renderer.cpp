@@ -153,13 +153,14 @@ struct Renderer::State {
   struct Programs {
     /// @param sun  one of the two ways in which shaders.h has sunlight
     Programs(const GladGLContext& gl, const char* sun)
-        : rigid(gl, {kShaderFrame, kSurfaceVertex},
+        : rigid(gl, {kShaderFrame, kPlacedVertex, kSurfaceVertex},
                 {kShaderFrame, sun, kShaderLighting, kRigid, kSurfaceFragment}),
-          soft(gl, {kShaderFrame, kSurfaceVertex},
+          soft(gl, {kShaderFrame, kPlacedVertex, kSurfaceVertex},
                {kShaderFrame, sun, kShaderLighting, kSoft, kSurfaceFragment}),
-          textured(gl, {kShaderFrame, kSurfaceVertex},
+          textured(gl, {kShaderFrame, kPlacedVertex, kSurfaceVertex},
                    {kShaderFrame, sun, kShaderLighting, kSoft, kTexturedFragment}),
-          tiles(gl, {kShaderFrame, kSurfaceVertex}, {kShaderFrame, sun, kShaderLighting, kTilesFragment}),
+          tiles(gl, {kShaderFrame, kPlacedVertex, kSurfaceVertex},
+                {kShaderFrame, sun, kShaderLighting, kTilesFragment}),
           shadow(gl, {kShaderFrame, kShadowVertex}, {kShaderFrame, kShadowFragment}),
           particle(gl, {kShaderFrame, kParticleVertex},
                    {kShaderFrame, sun, kShaderLighting, kParticleFragment}),

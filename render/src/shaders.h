@@ -99,7 +99,8 @@ vec3 shade(vec3 position, vec3 normal, vec3 shadow_position, vec3 albedo, float 
 }
 )glsl";
 
-inline constexpr char kSurfaceVertex[] = R"glsl(
+/// The part that vertex shaders of lit surfaces have in common.
+inline constexpr char kPlacedVertex[] = R"glsl(
 layout(location = 0) in vec3 vertex_position;
 layout(location = 1) in vec3 vertex_normal;
 layout(location = 2) in vec2 vertex_texture;
@@ -108,19 +109,25 @@ uniform mat3 normal_matrix;
 out vec3 position;
 out vec3 normal;
 out vec3 shadow_position;
-out vec2 pattern_position;
 out vec2 texture_position;
-void main() {
+void place_vertex() {
   vec4 world = model * vec4(vertex_position, 1.0);
   position = world.xyz;
   normal = normalize(normal_matrix * vertex_normal);
-  pattern_position = vertex_position.xz;
   texture_position = vertex_texture;
   // Compared a little off the surface, along the normal: a surface must not shadow itself (acne), and an offset along
   // the light would part shadows from the feet that cast them.
   vec3 lifted = position + normal * shadow_texel.y;
   shadow_position = 0.5 * (light_projection * vec4(lifted, 1.0)).xyz + 0.5;
   gl_Position = view_projection * world;
+}
+)glsl";
+
+inline constexpr char kSurfaceVertex[] = R"glsl(
+out vec2 pattern_position;
+void main() {
+  place_vertex();
+  pattern_position = vertex_position.xz;
 }
 )glsl";
 

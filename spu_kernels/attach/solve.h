@@ -1,6 +1,6 @@
 #pragma once
-// One attachment after the other: the impulses that hold particles and places where they should be, and the pushes that bring them back
-// there (ppu/contacts/attachment_rows.h has the equations).
+// Solves one attachment: the impulses that hold particles and places where they should be, and the pushes that bring them back
+// there. ppu/contacts/attachment_rows.h has the equations.
 
 #include <spu_intrinsics.h>
 #include <stdint.h>
@@ -12,14 +12,14 @@
 
 namespace softcell::spu {
 
-/// What attachments change: velocities and pushes of slots, and rigid bodies.
+/// The state that attachments change: velocities and pushes of slots, and rigid bodies.
 struct Held {
   vec_float4* velocities;
   vec_float4* pushes;
   RigidInMotion* rigids;
 };
 
-/// Of one link.
+/// A link and its records.
 struct LinkParts {
   Link* link;
   Point* points;
@@ -27,17 +27,17 @@ struct LinkParts {
   Entry* entries;  // of the first body, then of the second one
 };
 
-/// A register keeps its fourth lane.
+/// Adds to x y z; the fourth lane of the sum does not change.
 inline void add_to_xyz(vec_float4& sum, vec_float4 v) { sum = with_fourth(spu_add(sum, v), sum); }
 
-/// Null: none that moves.
+/// The link's rigid body; null: it has none that moves.
 inline RigidInMotion* rigid_of(const Link& link, const Held& held) {
   return link.rigid == kAttachNoRigid ? nullptr : held.rigids + link.rigid;
 }
 
 inline bool is_soft(const Link& link) { return spu_extract(link.terms, 0) > 0.0f; }
 
-/// What a compliant row adds to its error of velocity.
+/// The error of velocity of a compliant row.
 inline vec_float4 softened(const Link& link, vec_float4 v, vec_float4 error, vec_float4 impulse) {
   return spu_madd(splat_lane<0>(link.terms), impulse, spu_add(v, error));
 }
@@ -47,8 +47,8 @@ inline float squared_length(vec_float4 v) { return spu_extract(dot_in_all_lanes(
 inline uint32_t slot_of(const Point& point) { return spu_extract((vec_uint4)point.impulse, 3); }
 inline uint32_t slot_of(const Entry& entry) { return spu_extract(entry.slot, 0); }
 
-/// To all points at once: their errors of velocity, then what all of them do to the rigid body, then their impulses.
-/// @return  the largest error's square
+/// Solves all points at once: their errors of velocity, then the motion that all of them give the rigid body, then their impulses.
+/// @return  the square of the largest error
 inline float solve_points(const LinkParts& parts, const Held& held) {
   const Link& link = *parts.link;
   RigidInMotion* const rigid = rigid_of(link, held);
@@ -91,14 +91,14 @@ inline float solve_points(const LinkParts& parts, const Held& held) {
     point.pushed = spu_add(point.pushed, push);
   }
   if (rigid != nullptr) {
-    // What points were given it loses.
+    // The rigid body loses the momentum that the points got.
     rigid->velocity = spu_nmsub(splat_lane<3>(rigid->velocity), given, rigid->velocity);
     rigid->spin = spu_add(rigid->spin, spin);
   }
   return largest;
 }
 
-/// work(entry, whether it is the second body's), for all of them.
+/// Calls work(entry, whether it is the second body's) for each entry.
 template <typename Work>
 __attribute__((always_inline)) inline void each_entry(const LinkParts& parts, const Work& work) {
   Entry* entry = parts.entries;
@@ -106,12 +106,12 @@ __attribute__((always_inline)) inline void each_entry(const LinkParts& parts, co
     for (uint32_t i = 0; i < parts.link->entries[side]; ++i) work(*entry++, side != 0);
 }
 
-/// Of four places.
+/// A vector for each of four places.
 struct FourPlaces {
   vec_float4 at[4];
 };
 
-/// Adds what the values of particles make of places, of the first body against the second one.
+/// Adds to each place its value: the weighted sum over particles of the first body, minus that of the second one.
 inline void gather(const LinkParts& parts, const vec_float4* values, FourPlaces& places) {
   vec_float4 v0 = places.at[0], v1 = places.at[1], v2 = places.at[2], v3 = places.at[3];
   each_entry(
@@ -125,7 +125,7 @@ inline void gather(const LinkParts& parts, const vec_float4* values, FourPlaces&
   places = {{only_xyz(v0), only_xyz(v1), only_xyz(v2), only_xyz(v3)}};
 }
 
-/// What impulses at places change of an entry's particle, in its slot's unit.
+/// The change of an entry's particle by impulses at places, in the unit of slots.
 inline vec_float4 share_of(const Entry& entry, const FourPlaces& impulses, bool second) {
   vec_float4 sum = spu_mul(splat_lane<0>(entry.weight), impulses.at[0]);
   sum = spu_madd(splat_lane<1>(entry.weight), impulses.at[1], sum);
@@ -152,7 +152,7 @@ inline void apply_push(const LinkParts& parts, const Held& held, const FourPlace
       });
 }
 
-/// Minus the product of a symmetric matrix, by columns, and one number of each place along each axis.
+/// Minus the product of a symmetric matrix, given by columns, and the values of places, for each axis.
 inline FourPlaces impulses_against(const vec_float4* columns, const FourPlaces& v) {
   const auto row = [&](vec_float4 c) __attribute__((always_inline)) {
     vec_float4 sum = spu_mul(splat_lane<0>(c), v.at[0]);
@@ -163,7 +163,7 @@ inline FourPlaces impulses_against(const vec_float4* columns, const FourPlaces& 
   return {{row(columns[0]), row(columns[1]), row(columns[2]), row(columns[3])}};
 }
 
-/// All places at once.
+/// Solves all places at once. @return  the square of the largest error
 inline float solve_places(const LinkParts& parts, const Held& held) {
   const Link& link = *parts.link;
   const bool soft = is_soft(link);
@@ -190,14 +190,14 @@ inline float solve_places(const LinkParts& parts, const Held& held) {
   return largest;
 }
 
-/// The same value at one place, and nothing at the others.
+/// A value at one place, and zero at the others.
 inline FourPlaces only_at(uint32_t place, vec_float4 value) {
   FourPlaces places = {{spu_splats(0.0f), spu_splats(0.0f), spu_splats(0.0f), spu_splats(0.0f)}};
   places.at[place] = value;
   return places;
 }
 
-/// A row's error of velocity, and its rigid body's part in it.
+/// The error of velocity of a row, with the velocity of its rigid body.
 inline vec_float4 error_of_row(const LinkParts& parts, const Held& held, uint32_t k) {
   const Row& row = parts.rows[k];
   FourPlaces v = only_at(k, negative(row.carried));
@@ -212,7 +212,7 @@ inline void apply_to_row(const LinkParts& parts, const Held& held, uint32_t k, v
     take_at(*rigid, only_xyz(parts.rows[k].arm), impulse);
 }
 
-/// Rows one after the other.
+/// Solves rows one after the other. @return  the square of the largest error
 inline float solve_hinge(const LinkParts& parts, const Held& held) {
   const Link& link = *parts.link;
   float largest = 0.0f;
@@ -236,7 +236,7 @@ inline float solve_hinge(const LinkParts& parts, const Held& held) {
 
 inline vec_float4 not_above_zero(vec_float4 v) { return spu_and(v, (vec_float4)below_zero(v)); }
 
-/// It only pulls.
+/// Solves a rope, which pulls and never pushes. @return  the square of its error
 inline float solve_rope(const LinkParts& parts, const Held& held) {
   const Link& link = *parts.link;
   Row& row = *parts.rows;
@@ -261,7 +261,7 @@ inline float solve_rope(const LinkParts& parts, const Held& held) {
   return squared_length(only_xyz(spu_mul(spu_mul(change, reciprocal(mass)), along)));
 }
 
-/// Impulses as they are to what they may be.
+/// If the impulses of a link are together above its limit, scales them down to it and marks the link as broken.
 inline void keep_below_break_impulse(const LinkParts& parts, const Held& held) {
   Link& link = *parts.link;
   vec_float4 sum = spu_splats(0.0f);
@@ -289,7 +289,7 @@ inline void keep_below_break_impulse(const LinkParts& parts, const Held& held) {
   }
 }
 
-/// By no switch: compilers make tables of addresses of it, which an image must not have.
+/// Not a switch, because compilers make tables of addresses from it, which an image must not have.
 inline float solve_kind(const LinkParts& parts, const Held& held) {
   if (parts.link->kind == kAttachPoints) return solve_points(parts, held);
   if (parts.link->kind == kAttachPlaces) return solve_places(parts, held);
@@ -297,14 +297,15 @@ inline float solve_kind(const LinkParts& parts, const Held& held) {
   return solve_rope(parts, held);
 }
 
-/// One iteration over a link. @return  the largest error of velocity, squared, in (m/s)^2
+/// Makes one iteration over a link. @return  the square of the largest error of velocity, (m/s)^2
 inline float solve(const LinkParts& parts, const Held& held) {
   const float largest = solve_kind(parts, held);
   if (parts.link->breaks != 0) keep_below_break_impulse(parts, held);
   return largest;
 }
 
-/// Attachments that contradict each other push further and further. What others have pushed stays.
+/// Limits the push of one attachment, because attachments that contradict each other push further in each iteration. Pushes by other
+/// attachments do not change.
 inline void limit_push(vec_float4& push, vec_float4 pushed, vec_float4 root, float most) {
   const vec_float4 speed = only_xyz(spu_mul(root, pushed));
   const float square = squared_length(speed);

@@ -4,7 +4,7 @@
 //   do {
 //     load_and_reserve(&line, ea);
 //     line.count += 1;
-//   } while (!store_conditional(&line, ea));  // lost to somebody else: again with what is there now
+//   } while (!store_conditional(&line, ea));  // somebody else has changed the line: try again with its new content
 
 #include <spu_mfcio.h>
 #include <stdint.h>
@@ -18,13 +18,13 @@ inline void load_and_reserve(void* line, uint64_t ea) {
   mfc_read_atomic_status();
 }
 
-/// putllc: stores the line if the reservation still stands. True if it stored.
+/// putllc: stores the line if the reservation still exists. @return  whether it has stored the line
 inline bool store_conditional(void* line, uint64_t ea) {
   mfc_putllc(line, ea, 0, 0);
   return (mfc_read_atomic_status() & MFC_PUTLLC_STATUS) == 0;
 }
 
-/// putlluc: stores the line, whoever has reserved it.
+/// putlluc: stores the line unconditionally. Reservations of the line end.
 inline void store_line(void* line, uint64_t ea) {
   mfc_putlluc(line, ea, 0, 0);
   mfc_read_atomic_status();

@@ -38,7 +38,7 @@ inline void get_large(void* ls, uint64_t ea, uint32_t bytes, uint32_t tag) {
              [tag](char* to, uint64_t from, uint32_t size) { mfc_get(to, from, size, tag, 0, 0); });
 }
 
-/// Likewise, each behind what its tag group holds already.
+/// The same with fences: the gets begin after all earlier commands of the tag group.
 inline void getf_large(void* ls, uint64_t ea, uint32_t bytes, uint32_t tag) {
   move_large(ls, ea, bytes,
              [tag](char* to, uint64_t from, uint32_t size) { mfc_getf(to, from, size, tag, 0, 0); });
@@ -50,7 +50,7 @@ inline void touch_large(uint64_t ea, uint32_t bytes, uint32_t tag) {
              [tag](char*, uint64_t from, uint32_t size) { mfc_sdcrt(from, size, tag, 0, 0); });
 }
 
-/// Likewise puts.
+/// Queues as many puts as it takes to store `bytes` (a multiple of 16, 0 included) from `ls`.
 inline void put_large(void* ls, uint64_t ea, uint32_t bytes, uint32_t tag) {
   move_large(ls, ea, bytes,
              [tag](char* from, uint64_t to, uint32_t size) { mfc_put(from, to, size, tag, 0, 0); });

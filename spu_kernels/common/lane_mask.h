@@ -1,5 +1,5 @@
 #pragma once
-// Decisions about four lanes by their sign bits. Cheap on both sides, unlike float compares.
+// Comparisons of four lanes whose results are sign bits. They are cheap on the SPU and on the host; comparisons that make masks are not.
 
 #include <spu_intrinsics.h>
 #include <stdint.h>

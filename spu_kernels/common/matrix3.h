@@ -22,8 +22,8 @@ inline vec_float4 dot(const Quaternion4& a, const Quaternion4& b) {
   return spu_madd(a.x, b.x, spu_madd(a.y, b.y, spu_madd(a.z, b.z, spu_mul(a.w, b.w))));
 }
 
-/// The rotation matrices of quaternions whose length is one to within 1e-5. What is left of the length is
-/// divided out: 2 / |q|^2 = 2 (2 - |q|^2) to 1e-10, and the matrix is orthogonal to some roundings.
+/// The rotation matrices of quaternions whose length is one to within 1e-5. The factor 2 (2 - |q|^2), which is 2 / |q|^2 to within 1e-10,
+/// corrects the length, so that the matrix is orthogonal to some roundings.
 inline Matrix3x4 matrix_of(const Quaternion4& q) {
   const vec_float4 one = spu_splats(1.0f);
   const vec_float4 two = spu_madd(spu_splats(-2.0f), dot(q, q), spu_splats(4.0f));
@@ -34,7 +34,7 @@ inline Matrix3x4 matrix_of(const Quaternion4& q) {
           {spu_msub(tx, q.z, wy), spu_madd(ty, q.z, wx), spu_nmsub(tx, q.x, spu_nmsub(ty, q.y, one))}};
 }
 
-/// normalize(q (1, half)): turns by about 2 half in the body's frame. The length is one to 5e-6.
+/// normalize(q (1, half)): a further rotation by about 2 |half|, about `half` in the body's frame. The length is one to within 5e-6.
 inline Quaternion4 turn(const Quaternion4& q, const Vector3x4& half) {
   const Quaternion4 t = {spu_madd(q.w, half.x, spu_madd(q.y, half.z, spu_nmsub(q.z, half.y, q.x))),
                          spu_madd(q.w, half.y, spu_madd(q.z, half.x, spu_nmsub(q.x, half.z, q.y))),

@@ -1,6 +1,6 @@
 #pragma once
-// The origin of a body, a point in it to which its sums refer. Far from the world's origin they would lose
-// all their digits. The point is a multiple of a grid, a power of two, so that subtracting it is exact.
+// The origin of a body: a point in the body to which its sums refer. If sums referred to the world's origin, they would lose all their
+// digits far from there. The point is a multiple of a grid, a power of two, so that subtracting it is exact.
 
 #include <spu_intrinsics.h>
 #include <stdint.h>

@@ -1,8 +1,8 @@
 #pragma once
 // 1 / x and 1 / sqrt(x), four at a time, by Newton's method from an estimate that costs one subtraction.
 //
-// spu_re() or spu_rsqrte() and one step would be some instructions less on an SPU, but thirty more on a host,
-// which has to look the estimate up in a table.
+// With spu_re() or spu_rsqrte() and one step an SPU would need some instructions less, but a host thirty more, because it looks these
+// estimates up in a table.
 
 #include <spu_intrinsics.h>
 
@@ -13,8 +13,8 @@ inline vec_float4 sharpen_reciprocal(vec_float4 x, vec_float4 y) {
   return spu_madd(y, spu_nmsub(x, y, spu_splats(1.0f)), y);
 }
 
-/// 1 / x to a relative error of 3e-4, for normal x > 0 below 2^126. Negating the exponent by an integer
-/// subtraction is right to 12 %.
+/// 1 / x to a relative error of 3e-4, for normal x > 0 below 2^126. It begins with an integer subtraction, which negates the exponent and
+/// is right to within 12 %.
 inline vec_float4 rough_reciprocal(vec_float4 x) {
   const vec_float4 y = (vec_float4)spu_sub(spu_splats(0x7EF311C7u), (vec_uint4)x);
   return sharpen_reciprocal(x, sharpen_reciprocal(x, y));
@@ -23,8 +23,8 @@ inline vec_float4 rough_reciprocal(vec_float4 x) {
 /// 1 / x to a relative error of 4e-7, for the same x.
 inline vec_float4 reciprocal(vec_float4 x) { return sharpen_reciprocal(x, rough_reciprocal(x)); }
 
-/// 1 / sqrt(x) for normal x > 0, relative error below 5e-6: enough for a vector that becomes halves.
-/// Halving the exponent by an integer shift is right to 3.5 %; two Newton steps square that twice.
+/// 1 / sqrt(x) for normal x > 0, relative error below 5e-6: enough for a vector that is rounded to halves.
+/// It begins with an integer shift, which halves the exponent and is right to within 3.5 %; each of two Newton steps squares the error.
 inline vec_float4 reciprocal_sqrt(vec_float4 x) {
   const vec_float4 half_x = spu_mul(x, spu_splats(0.5f));
   const vec_float4 y0 = (vec_float4)spu_sub(spu_splats(0x5F375A86u), spu_rlmask((vec_uint4)x, -1));
@@ -32,11 +32,10 @@ inline vec_float4 reciprocal_sqrt(vec_float4 x) {
   return spu_mul(y1, spu_nmsub(spu_mul(half_x, y1), y1, spu_splats(1.5f)));
 }
 
-/// scale / sqrt(x) for normal x > 0, relative error below 3e-5: a tenth of what rounding a unit vector to
-/// halves takes away. From the same estimate y; the square of its error, r = x y^2, is within 7 % of one, and
-/// 1 / sqrt(r) a parabola there (least greatest error), 0.375 r^2 - 1.251106 r + 1.876106. Five operations in
-/// a row instead of seven.
-/// @param scale  a constant power of two, which costs nothing here and changes no bit but of the exponent
+/// scale / sqrt(x) for normal x > 0, relative error below 3e-5: a tenth of the error of rounding a unit vector to
+/// halves. It begins with the same estimate y. r = x y^2 is within 7 % of one, and there 1 / sqrt(r) is nearly the parabola
+/// 0.375 r^2 - 1.251106 r + 1.876106 (the one with the smallest greatest error). That takes a chain of five operations instead of seven.
+/// @param scale  a constant power of two; it costs nothing here and changes only the exponent
 inline vec_float4 rough_reciprocal_sqrt(vec_float4 x, float scale = 1) {
   const vec_float4 y = (vec_float4)spu_sub(spu_splats(0x5F375A86u), spu_rlmask((vec_uint4)x, -1));
   const vec_float4 r = spu_mul(x, spu_mul(y, y));

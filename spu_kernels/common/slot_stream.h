@@ -1,11 +1,11 @@
 #pragma once
-// Slots in the order of a chain, loaded before they are asked for, for a processor that executes in order: the SPU.
+// Loads slots in the order of a chain before they are needed, for a processor that executes in order: the SPU.
 //
 //   stage   offset from the list      rows from the slot      sums
 //           k + 2                     k + 1                   k
 //
-// A load takes 6 cycles and an offset 17 more (load, rotate, multiply). One behind the other they are longer than all other
-// work on a slot; side by side they cost the issue of their instructions.  [SPU pipelines] documented
+// A load takes 6 cycles, and an offset 17 more (load, rotate, multiply). Done one after the other they would take longer than all other
+// work on a slot. Overlapped they cost only the issue of their instructions.  [SPU pipelines] documented
 
 #include <spu_intrinsics.h>
 #include <stdint.h>
@@ -14,7 +14,7 @@
 
 namespace softcell::spu {
 
-/// work(k) for each row, unrolled, so that arrays of rows become registers.
+/// Calls work(k) for each row. The loop is unrolled, so that arrays of rows become registers.
 template <int kRows, typename Work>
 __attribute__((always_inline)) inline void each_row(const Work& work) {
   static_assert(kRows >= 1 && kRows <= 3, "what is unrolled below");
@@ -26,7 +26,7 @@ __attribute__((always_inline)) inline void each_row(const Work& work) {
 /// Some compilers declare that the argument of si_from_ptr is no pointer to const.
 inline qword address_of(const void* pointer) { return si_from_ptr(const_cast<void*>(pointer)); }
 
-/// @tparam kRows  how many quadwords of each slot
+/// @tparam kRows  how many quadwords of each slot are loaded
 template <int kRows, typename Slot>
 class SlotStream {
  public:
@@ -57,7 +57,7 @@ class SlotStream {
                         __attribute__((always_inline)) { row_[k] = (vec_float4)si_lqx(base_[k], offset_); });
   }
 
-  /// Behind the chain's end lies something else: slot 0 is loaded in its place, which is always there.
+  /// Past the chain's end the list holds something else, so the offset becomes that of slot 0, which always exists.
   __attribute__((always_inline)) void scale() {
     offset_ = si_and(si_mpyui(in_words_, kSumOffsetUnit), there_);
   }
@@ -69,15 +69,15 @@ class SlotStream {
   }
 
   qword base_[kRows];
-  vec_float4 row_[kRows];  // of the slot that take() hands out next
-  qword offset_;           // in bytes, of the one behind it
-  qword in_words_;         // the offset of the one behind that, as it lies in the list
-  qword there_;            // all ones where that is one of the chain
+  vec_float4 row_[kRows];  // of the slot that take() uses next
+  qword offset_;           // of the slot after that, in bytes
+  qword in_words_;         // of the slot after these two, as in the list
+  qword there_;            // all ones if the chain has such a slot
   const uint16_t *next_, *end_;
 };
 
-/// One chain: as sum_slots() of sums.h, in the same order.
-/// @return  what comes behind it in the list
+/// Makes the sums of one chain, in the same order as sum_slots() of sums.h.
+/// @return  the place in the list after the chain
 template <int kRows, typename Slot>
 __attribute__((always_inline)) inline const uint16_t* sum_chain_in_order(const uint16_t* list, const Slot* in,
                                                                          Slot*& out) {

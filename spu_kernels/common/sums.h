@@ -1,10 +1,10 @@
 #pragma once
-// Sums of slots by a sum list (sum_list_job.h): from particles to bars, bars to plates, plates to regions.
+// Makes sums of slots by a sum list (sum_list_job.h): from particles to bars, bars to plates, plates to regions.
 // [LSM07]
 //
 // Along a row, neighbouring bars differ by one particle that joins and one that leaves. A chain adds the
-// difference of the two, so a sum costs the same for every half-width. The lists say where a chain starts
-// anew: rounding errors do not pile up along a body.
+// difference of the two, so a sum costs the same for every half-width. The lists say where a chain begins
+// anew, so that rounding errors do not add up along a body.
 
 #include <spu_intrinsics.h>
 #include <stdint.h>
@@ -14,7 +14,7 @@
 
 namespace softcell::spu {
 
-/// A slot that adds nothing: what slot 0 of every buffer is.
+/// Sets a slot to zero, as slot 0 of every buffer must be.
 template <typename Slot>
 inline void clear(Slot& slot) {
   for (vec_float4& row : slot.row) row = spu_splats(0.0f);
@@ -26,7 +26,7 @@ inline const Slot& slot_at(const Slot* slots, uint32_t offset) {
   return *reinterpret_cast<const Slot*>(reinterpret_cast<const char*>(slots) + offset * kSumOffsetUnit);
 }
 
-/// out[1], out[2], ... by `list`. Of each slot, a struct of `vec_float4 row[]`, the first `kRows` rows.
+/// Writes out[1], out[2], ... by `list`: the first `kRows` rows of each slot, a struct of `vec_float4 row[]`.
 template <int kRows, typename Slot>
 __attribute__((noinline)) void sum_slots(const uint16_t* list, const Slot* in, Slot* out) {
   static_assert(kRows >= 1 && kRows <= 3, "what is unrolled below");
@@ -51,7 +51,7 @@ __attribute__((noinline)) void sum_slots(const uint16_t* list, const Slot* in, S
       continue;
     }
 #ifdef __SPU__
-    // The same sums in the same order, their slots loaded ahead: an SPU executes in order, and a host's processor does that itself.
+    // The same sums in the same order, but slots are loaded ahead, because an SPU executes in order. A host's processor loads ahead itself.
     list = sum_chain_in_order<kRows>(list, in, out);
 #else
     const uint32_t growing = list[1], sliding = list[2], shrinking = list[3];

@@ -1,5 +1,5 @@
 #pragma once
-// Scales a sum over a region, from which its rotation is found, to about one, or marks it as noise.
+// Scales the sum over a region from which its rotation is found, so that it is about one; or marks the sum as noise.
 
 #include <spu_intrinsics.h>
 
@@ -7,23 +7,22 @@
 
 namespace softcell::spu {
 
-/// A sum is rounding noise if the magnitudes of its elements, added up and times `weight`, are at most
-/// `floor`.
+/// A sum is rounding noise if the sum of its elements' magnitudes, times `weight`, is at most `floor`.
 struct RotationNoise {
   vec_float4 weight;
   vec_float4 floor;
 };
 
-/// Magnitudes outside this range count as noise too.
+/// Sums of magnitudes outside of this range count as noise, too.
 constexpr float kLargestSum = 1.7e38f;
 constexpr float kSmallestSum = 1e-37f;
 
 struct UnitScale {
   vec_float4 by;    ///< a power of two that brings `sum` to 1..2; 0 where it is noise
-  vec_uint4 noise;  ///< all ones where it is
+  vec_uint4 noise;  ///< all ones where the sum is noise
 };
 
-/// @param sum  of the magnitudes of all elements
+/// @param sum  the sum of the magnitudes of all elements
 __attribute__((always_inline)) inline UnitScale unit_scale(vec_float4 sum, const RotationNoise& noise_of) {
   const vec_uint4 exponent = spu_and((vec_uint4)sum, spu_splats(0x7F800000u));
   const vec_uint4 noise = negative_lanes(spu_or(

@@ -1,5 +1,5 @@
 #pragma once
-// Boxes in the lanes of registers, and lanes that are left of a comparison of four of them.
+// Boxes in the lanes of registers, and sets of lanes that comparisons of four boxes leave.
 
 #include <spu_intrinsics.h>
 
@@ -28,14 +28,14 @@ inline uint32_t lanes_left(vec_uint4 words) {
   return spu_extract(spu_gather(spu_rlmask(words, -31)), 0) ^ 15u;
 }
 
-/// The first of some lanes, which is taken out.
+/// Removes the first lane of a set and returns it.
 inline uint32_t take_lane(uint32_t& lanes) {
   const uint32_t lane = static_cast<uint32_t>(__builtin_clz(lanes)) - 28;
   lanes &= ~(8u >> lane);
   return lane;
 }
 
-/// What two boxes have in common.
+/// The box that two boxes have in common.
 inline BoxInAllLanes common(const BoxInAllLanes& a, const BoxInAllLanes& b) {
   return {{larger(a.low.x, b.low.x), larger(a.low.y, b.low.y), larger(a.low.z, b.low.z)},
           {smaller(a.high.x, b.high.x), smaller(a.high.y, b.high.y), smaller(a.high.z, b.high.z)}};

@@ -1,5 +1,5 @@
 #pragma once
-// A search that begins anew: the points of one body in the cells of another.
+// A search without known candidates: the points of one body in the cells of another.
 
 #include <spu_intrinsics.h>
 
@@ -10,7 +10,7 @@
 namespace softcell::spu {
 namespace {  // a part of contact_find.cpp, which alone includes it
 
-/// What is known of candidates: all are in ls.candidates; nobody wants them, or they do not fit; there was no room to look for them.
+/// The state of candidates: all are in ls.candidates; nobody wants them, or they do not fit; there was no room to look for them.
 enum class Candidates { kThere, kNotKept, kTooMany };
 
 /// One body's points in the other body: candidates and contacts.
@@ -22,7 +22,7 @@ class Direction {
       : sides_(sides),
         near_mine_(near_mine),
         near_other_(near_other),
-        // Rounding must not make a difference.
+        // A reserve, so that rounding does not change which points are found.
         rounding_(spu_splats(0x1.a36e2ep-14f * sides.other.spacing)),  // 1e-4
         margin_(spu_add(spu_splats(margin), rounding_)),
         contacts_(contacts),
@@ -56,7 +56,7 @@ class Direction {
     return true;
   }
 
-  /// Around all points, and the margin around the box.
+  /// The box around all points, widened by the margin.
   Region region_of(const FourPoints* points, uint32_t count) const {
     Vector3x4 low = points[0].end, high = low;
     for (uint32_t i = 1; i < count; ++i) {

@@ -10,7 +10,7 @@
 namespace softcell::spu {
 namespace {  // a part of contact_find.cpp, which alone includes it
 
-/// Inverses are of another body from now on.
+/// Discards all inverses: those that follow belong to another body.
 void forget_inverses() {
   const vec_ushort8 nobody = spu_splats(kFindNoCell);
   for (uint32_t i = 0; i < kInverses; i += 8) *reinterpret_cast<vec_ushort8*>(ls.inverse_of + i) = nobody;
@@ -20,7 +20,7 @@ const RoughInverse& inverse_of(const Sides& sides, uint32_t cell) {
   const uint32_t place = cell % kInverses;
   if (ls.inverse_of[place] != cell) {
     const CellAtRest& at_rest = sides.other.cells[cell];
-    // In two steps: of a result that a function writes where it belongs, the checker hears nothing.
+    // In two steps: the checker does not see stores by which a function writes its result directly into its place.
     const RoughInverse inverse = rough_inverse(deformed_cell(at_rest.corner, sides.other.ends), at_rest.least,
                                                sides.least_volume, kNearInField);
     ls.inverse[place] = inverse;
@@ -53,9 +53,9 @@ class Contacts {
   Contacts(const BodyInStore& a, const BodyInStore& b, const TaskTerms& terms)
       : a_in_b_(a, b, false), b_in_a_(b, a, true), terms_(terms) {}
 
-  /// Of the candidates in ls.candidates. @return  false: there is no room
+  /// Finds the contacts of the candidates in ls.candidates. @return  false: there is no room
   bool find_among_candidates() {
-    const Sides* now = nullptr;  // whose inverses are there
+    const Sides* now = nullptr;  // to which the present inverses belong
     for (uint32_t i = 0; i < ls.candidate_count;) {
       const bool of_b = (ls.candidates[i].of_groups & kFindOfB) != 0;
       const Sides& sides = of_b ? b_in_a_ : a_in_b_;
@@ -66,8 +66,8 @@ class Contacts {
     return true;
   }
 
-  /// Of four points of a cell with another body's cell. @param rough  where they are in it, about
-  /// @param elsewhere  words whose top bit is set where nobody asks
+  /// Finds the contacts of four points of a cell with another body's cell. @param rough  about where they are in it
+  /// @param elsewhere  words whose top bit is set in lanes that are not needed
   /// @return  false: there is no room
   __attribute__((noinline)) bool find_in_cell(const Sides& sides, uint32_t cell, uint32_t there,
                                               FourPoints& four, const Vector3x4& rough, vec_uint4 elsewhere) {
@@ -103,8 +103,8 @@ class Contacts {
   }
 
  private:
-  /// All of the same four groups. @param i  the first of them; becomes the first one of others
-  // Inlined, as Clang would do, its points would take stack also where a search begins anew.
+  /// Finds the contacts of all candidates that have the same four groups. @param i  the first of them; becomes the first one of others
+  // Not inlined, as Clang would do, because its points would take stack also in a search without known candidates.
   __attribute__((noinline)) bool find_of_cell(const Sides& sides, uint32_t& i) {
     const FindCandidate first = ls.candidates[i];
     const CellMap map = in_all_lanes(deformed_cell(sides.mine.cells[first.cell].corner, sides.mine.ends));

@@ -1,6 +1,6 @@
 #pragma once
-// What the kernel `contact_find` keeps in its local store: a task, two bodies, what is near of them, candidates and contacts; and the
-// transfers that bring and fetch them.
+// The layout of the local store of the kernel `contact_find`: a task, two bodies, their cells that are near the other body, candidates and
+// contacts; and the transfers of these.
 
 #include <spu_intrinsics.h>
 #include <spu_mfcio.h>
@@ -24,7 +24,7 @@ constexpr uint32_t kInverses = 64;      // that are kept
 constexpr uint32_t kContactBatch = 64;  // contacts that go to main memory together
 #endif
 constexpr uint32_t kGroups = 4;  // of a FindCandidate
-/// Something that is in the local store already.
+/// A part of main memory of which the local store has a copy.
 struct Part {
   uint64_t ea;  // 0: nothing
   uint32_t offset;
@@ -40,16 +40,16 @@ struct NearCells {
 };
 static_assert(kFindMaxNear % 16 == 0, "whole blocks");
 
-/// Of near cells, as RoughInverse, a cell to a lane: what is no farther from the three pairs of planes than a distance, and from the
-/// plane below the surface, may be in the cell.
+/// Bounds of near cells, one in each lane, as RoughInverse: a point may be in the cell if it is within a distance of the three pairs of
+/// planes and of the plane below the surface.
 struct NearBounds {
   enum Row : uint32_t {
     kMiddle = 0,   // x y z
     kRow1 = 3,     // x y z of each of the inverse's rows
     kReach = 12,   // by s1 s2 s3
-    kLength = 15,  // of the three rows, 1/m: how much of reach a metre is
+    kLength = 15,  // of the three rows, 1/m: converts metres to the unit of kReach
     kSlope = 18,   // x y z: of the plane below the field, in the world
-    kLimit = 21,   // of what it says
+    kLimit = 21,   // largest value of this plane's function for points that may be near
     kSteep = 22,   // length of the slope
     kRows = 23
   };
@@ -64,25 +64,25 @@ struct alignas(128) LocalStoreMap {
   FindResult result;
   alignas(128) char bytes[kFindMaxBytes];  // model and state of a, then those of b
   Part model[2], state[2];
-  alignas(128) SolvedContact contacts[kContactBatch];  // found last
-  uint32_t contacts_sent;                              // before them
-  uint32_t contacts_most;                              // that the task may have
+  alignas(128) SolvedContact contacts[kContactBatch];  // the newest contacts
+  uint32_t contacts_sent;                              // number of contacts that were stored before these
+  uint32_t contacts_most;                              // the most that the task may have
   uint64_t contacts_ea;                                // of the task
   NearCells near[2];                                   // of a, of b
-  uint16_t inverse_of[kInverses];                      // whose it is
+  uint16_t inverse_of[kInverses];                      // the cell of each inverse
   uint16_t meets[kFindMaxNear];
   alignas(128) FindCandidate candidates[kFindMaxCandidates];
   uint32_t candidate_count;
   union {
     alignas(16) float along[2][kFindMaxParticles];  // places of particles between the two bodies
     NearBounds bounds;                              // behind that
-    RoughInverse inverse[kInverses];  // where candidates are known: of a cell at its number modulo kInverses
+    RoughInverse inverse[kInverses];  // if candidates are known; of a cell: at its number modulo kInverses
   };
   uint32_t under_way;  // tag groups with transfers
 };
 LocalStoreMap ls;
 
-/// Where a body's parts are.
+/// The places of a body's parts.
 BodyInStore body_in_store(uint32_t model, uint32_t state, const FindBody& body) {
   const auto at = [](uint32_t offset) { return reinterpret_cast<const vec_float4*>(ls.bytes + offset); };
   const uint32_t ends = state + (body.cell_count + 3) / 4 * static_cast<uint32_t>(sizeof(FindBoxes));
@@ -96,7 +96,7 @@ BodyInStore body_in_store(uint32_t model, uint32_t state, const FindBody& body) 
           body.spacing};
 }
 
-/// Tasks come in an order in which much is there already.
+/// The PPU side orders tasks so that much is in the local store already.
 inline bool is_there(Part& part, uint64_t ea, uint32_t offset) {
   const bool is = part.ea == ea && part.offset == offset;
   part = {ea, offset};
@@ -118,18 +118,18 @@ void fetch_state(Part& part, uint32_t offset, const FindBody& body) {
   ls.under_way |= 1u << kTagIn;
 }
 
-/// In whole quadwords.
+/// Rounds up to whole quadwords.
 inline uint32_t bytes_of_candidates(uint32_t count) {
   return (count + 1) / 2 * 2 * static_cast<uint32_t>(sizeof(FindCandidate));
 }
 
-/// Until all transfers of bodies and contacts are complete.
+/// Waits until all transfers of bodies and contacts are complete.
 void wait_for_all() {
   if (ls.under_way != 0) wait_for_tags(ls.under_way);
   ls.under_way = 0;
 }
 
-/// The contacts in the local store to main memory.
+/// Stores the contacts in main memory.
 void send_contacts() {
   const uint32_t count = ls.result.count - ls.contacts_sent;
   if (count == 0) return;
@@ -140,7 +140,7 @@ void send_contacts() {
   ls.contacts_sent = ls.result.count;
 }
 
-/// Where the next contact goes.
+/// The place of the next contact.
 SolvedContact& room_for_contact() {
   if (ls.result.count - ls.contacts_sent == kContactBatch) {
     send_contacts();

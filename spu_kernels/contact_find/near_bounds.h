@@ -1,5 +1,5 @@
 #pragma once
-// Bounds of near cells: four at a time against a ball, one against four points.
+// Bounds of near cells: compares four cells with a ball, or one cell with four points.
 
 #include <spu_intrinsics.h>
 
@@ -10,7 +10,7 @@
 namespace softcell::spu {
 namespace {  // a part of contact_find.cpp, which alone includes it
 
-/// Where the points of a cell are: in a box, and in a ball. In all lanes.
+/// A box and a ball around the points of a cell, in all lanes.
 struct Region {
   BoxInAllLanes box;
   Vector3x4 middle;
@@ -23,7 +23,7 @@ struct Bounds4 {
   vec_float4 limit, steep;
 };
 
-/// @param at  what is in a row of ls.bounds
+/// @param at  the name of a row of ls.bounds
 template <typename At>
 inline Bounds4 bounds_at(const At& at) {
   const auto three = [&](uint32_t first) __attribute__((always_inline)) {
@@ -34,10 +34,10 @@ inline Bounds4 bounds_at(const At& at) {
           three(B::kLength), three(B::kSlope), at(B::kLimit),       at(B::kSteep)};
 }
 
-/// Points as a cell sees them.
+/// Four points relative to a cell.
 struct RoughPlaces {
   Vector3x4 s;       // where they would be in the cell if it were a parallelepiped
-  vec_float4 above;  // what the lower plane's function says
+  vec_float4 above;  // the value of the lower plane's function
 };
 
 inline RoughPlaces rough_places(const Bounds4& cell, const Vector3x4& point) {
@@ -46,7 +46,7 @@ inline RoughPlaces rough_places(const Bounds4& cell, const Vector3x4& point) {
 }
 
 /// Words whose top bit is set where points cannot be in a cell and near its surface.
-/// @param distance  metres: of all that may be there from the points
+/// @param distance  metres: the radius around the points within which everything counts as one of them
 inline vec_uint4 surely_far(const Bounds4& cell, const RoughPlaces& places, vec_float4 distance) {
   const auto beyond = [&](vec_float4 s, vec_float4 reach, vec_float4 length) __attribute__((always_inline)) {
     return less(spu_madd(length, distance, reach), absolute(s));
@@ -72,7 +72,7 @@ void bound_blocks(NearCells& near) {
   }
 }
 
-/// Those near cells that may hold a point of a region, ascending, to ls.meets.
+/// Writes the near cells that may hold a point of a region to ls.meets, in ascending order.
 /// @param margin  metres, in all lanes
 uint32_t gather_meeting(const Region& region, vec_float4 margin, const NearCells& near) {
   const vec_float4 distance = spu_add(region.radius, margin);
@@ -99,8 +99,8 @@ uint32_t gather_meeting(const Region& region, vec_float4 margin, const NearCells
   return count;
 }
 
-/// Of four near cells to ls.bounds.
-// Not inlined: its arrays are not needed together with the points of a cell.
+/// Writes the bounds of four near cells to ls.bounds.
+// Not inlined, so that its arrays do not take stack while the points of a cell do.
 __attribute__((noinline)) void bound_four(const Sides& sides, const NearCells& near, uint32_t first) {
   vec_float4 middle[4], row1[4], row2[4], row3[4], reach[4], lengths[4], slope[4];
   for (uint32_t i = 0; i < 4; ++i) {

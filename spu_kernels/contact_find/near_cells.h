@@ -1,5 +1,5 @@
 #pragma once
-// Cells of one body that are near another one: in a box, and between two planes.
+// Finds the cells of one body that are near another one: in a box, and between two planes.
 
 #include <spu_intrinsics.h>
 
@@ -35,14 +35,14 @@ inline Reach widened(const Reach& reach, vec_float4 direction, float margin) {
   return {reach.least - spu_extract(wide, 0), reach.most + spu_extract(wide, 0)};
 }
 
-/// What a cell has to meet to be near: a box, and a plane between the two bodies.
+/// The conditions for a cell to be near: it meets a box, and reaches between two planes.
 struct Nearness {
   BoxInAllLanes box;
   const float* along;  // of the body's particles; null: no plane
-  float least, most;   // one corner at least has to be in between
+  float least, most;   // the planes: at least one corner of the cell is between them
 };
 
-/// Cells of a body that are near the other, and the box around them.
+/// Finds the cells of a body that are near the other, and the box around them.
 /// @return  false: there are too many
 bool gather_near(const BodyInStore& body, const Nearness& nearness, NearCells& near, BoxInAllLanes& around) {
   near.count = 0;
@@ -61,7 +61,7 @@ bool gather_near(const BodyInStore& body, const Nearness& nearness, NearCells& n
         };
         const vec_float4 low = {along(0), along(1), along(2), along(3)};
         const vec_float4 high = {along(4), along(5), along(6), along(7)};
-        // All below, or all above?
+        // Whether all corners are below, or all above.
         const vec_float4 least = spu_splats(nearness.least), most = spu_splats(nearness.most);
         const vec_uint4 below = spu_and(less(low, least), less(high, least));
         const vec_uint4 above = spu_and(less(most, low), less(most, high));
@@ -78,7 +78,7 @@ bool gather_near(const BodyInStore& body, const Nearness& nearness, NearCells& n
       ++near.count;
     }
   }
-  for (uint32_t i = near.count; i < near.count + 4; ++i) {  // what fills up the last four meets nothing
+  for (uint32_t i = near.count; i < near.count + 4; ++i) {  // boxes that meet nothing fill up the last four
     for (uint32_t k = 0; k < 3; ++k) near.box[k][i] = 0x1.93e594p+99f;   // 1e30
     for (uint32_t k = 3; k < 6; ++k) near.box[k][i] = -0x1.93e594p+99f;  // 1e30
   }

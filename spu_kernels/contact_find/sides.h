@@ -1,5 +1,5 @@
 #pragma once
-// Two bodies as a search sees them: whose points, in whose cells.
+// The roles of two bodies in a search: one has the points, the other one the cells.
 
 #include <spu_intrinsics.h>
 
@@ -8,7 +8,7 @@
 namespace softcell::spu {
 namespace {  // a part of contact_find.cpp, which alone includes it
 
-/// Of a body with itself: whether two cells are too near at rest to touch.
+/// Whether two cells of one body are too near each other at rest to touch.
 bool belong_together(const CellAtRest& a, const CellAtRest& b) {
   int32_t square = 0;
   for (int d = 0; d < 3; ++d) {
@@ -18,13 +18,13 @@ bool belong_together(const CellAtRest& a, const CellAtRest& b) {
   return square <= kFindApart * kFindApart;
 }
 
-/// Two bodies as a Direction sees them: whose points, in whose cells.
+/// The roles of two bodies in a search: one has the points, the other one the cells.
 struct Sides {
   const BodyInStore& mine;
   const BodyInStore& other;
   bool swap;  // contacts are as seen from `other`
   float least_volume;
-  vec_float4 per_spacing;  // of the other
+  vec_float4 per_spacing;  // 1 / spacing of the other body
 
   Sides(const BodyInStore& my, const BodyInStore& its, bool seen_from_other)
       : mine(my),

@@ -1,7 +1,7 @@
 #pragma once
 // A body of a task in the local store: its cells, and the distances from its surface at rest.
 //
-// Functions that are used in several places are not inlined: the checked image of the kernel has hardly room for its code.
+// Functions that are used in several places are not inlined, because the checked image of the kernel has little room for its code.
 
 #include <spu_intrinsics.h>
 #include <stdint.h>

@@ -1,5 +1,6 @@
 #pragma once
-// Region damping between the sums: what goes up, the region's rigid motion, what comes down.
+// The arithmetic of region damping between the sums: the payload of a particle, the rigid motion of a region, and what becomes of the sums
+// of motions.
 // [Mueller et al. 2006, section 3.5, per region]
 //
 //   up      P = m~ v,  L0 = x × m~ v,  Q = m~ x x^T
@@ -22,8 +23,7 @@ inline vec_float4 modified_mass(const RestMoments& rest_moment) {
                          interleave_high(rest_moment[1], rest_moment[3]));
 }
 
-/// Four particles' payload.
-/// @param mass  m~
+/// Computes the payload of four particles. @param mass  m~
 inline void twist_moments(vec_float4 mass, const Vector3x4& x, const Vector3x4& v, Slot* out) {
   const Vector3x4 momentum = scale(v, mass), moment = scale(x, mass);
   const Vector3x4 l = cross(x, momentum);
@@ -38,9 +38,8 @@ struct Symmetric3x4 {
   vec_float4 xx, yy, zz, xy, yz, zx;
 };
 
-/// omega = I^+ L for I = trace(C) 1 - C. Particles on one line have no inertia about it, but no angular
-/// momentum either: a small multiple of the trace keeps the inverse from failing. Particles on one point do
-/// not turn.
+/// omega = I^+ L for I = trace(C) 1 - C. Particles on one line have neither inertia nor angular momentum about it; a small multiple of the
+/// trace keeps I invertible. Particles on one point do not turn.
 /// @param least  traces up to this are noise
 inline Vector3x4 angular_velocity(const Symmetric3x4& c, const Vector3x4& l, vec_float4 least) {
   constexpr float kShift = 2e-6f;
@@ -66,9 +65,9 @@ inline Vector3x4 angular_velocity(const Symmetric3x4& c, const Vector3x4& l, vec
                inverse);
 }
 
-/// Sums of four regions to their twists: the first two rows of four slots, their own or others.
-/// @param moment  sum m~ x of each, as match_regions() left it
-/// @param by      1 / M of each
+/// Computes the twists of four regions from their sums, into the first two rows of four slots: the sums' own or others.
+/// @param moment  sum m~ x of each region, from match_regions()
+/// @param by      1 / M of each region
 template <typename AnySlot>
 inline void twist_regions(vec_float4 by, const Vector3x4& moment, const Slot* sums, AnySlot* slots,
                           vec_float4 noise_floor) {
@@ -80,7 +79,7 @@ inline void twist_regions(vec_float4 by, const Vector3x4& moment, const Slot* su
   const Symmetric3x4 second = {spu_nmsub(moment.x, c.x, x.d), spu_nmsub(moment.y, c.y, y.d),
                                spu_nmsub(moment.z, c.z, z.d), spu_nmsub(moment.x, c.y, z.a),
                                spu_nmsub(moment.y, c.z, z.b), spu_nmsub(moment.z, c.x, z.c)};
-  // Per mass: the sizes of determinants do not depend on the body's.
+  // Divided by the mass, so that the sizes of determinants do not depend on it.
   const Vector3x4 omega =
       angular_velocity({spu_mul(second.xx, by), spu_mul(second.yy, by), spu_mul(second.zz, by),
                         spu_mul(second.xy, by), spu_mul(second.yz, by), spu_mul(second.zx, by)},
@@ -92,9 +91,9 @@ inline void twist_regions(vec_float4 by, const Vector3x4& moment, const Slot* su
   store_row(slots, 1, {omega.x, omega.y, omega.z, zero});
 }
 
-/// The velocities of four particles, less `damping` times what is not rigid motion of their regions.
-/// @param share   1 / |R_i| of each
-/// @param region  offsets of their regions' totals
+/// The velocities of four particles, minus `damping` times the part that is not the rigid motion of their regions.
+/// @param share   1 / |R_i| of each particle
+/// @param region  offsets of the totals of their regions
 template <typename AnySlot>
 inline Vector3x4 damp(vec_float4 share, const uint32_t (&region)[4], const AnySlot* totals,
                       const Vector3x4& x, const Vector3x4& v, vec_float4 damping) {

@@ -1,9 +1,9 @@
 #pragma once
 // Keeps the pull from moving the body as a whole.
 //
-// The sum of m (g - x) over a body is nothing but for rounding; but truncation errs to one side, and a body
-// at rest would begin to drift. So it is summed up and taken off the velocities again. The sum is one of
-// integers: exact, hence the same whatever the order, and a body's particles may be summed up by many SPEs.
+// The sum of m (g - x) over a body is zero except for rounding errors. But truncation always errs in the same direction, so a body at rest
+// would begin to drift. Therefore the kernels sum it up and subtract it from the velocities. They add integers: such a sum is exact and so
+// the same in any order, and several SPEs may each add some particles.
 
 #include <spu_intrinsics.h>
 #include <stdint.h>
@@ -14,12 +14,12 @@
 
 namespace softcell::spu {
 
-/// The sum of some m (g - x), in units of 1 / MatchHold::scale: 65536 times `high`, plus `low`, over all
-/// lanes. Up to 65,536 particles in each lane.
+/// The sum of m (g - x) over particles, in units of 1 / MatchHold::scale: 65536 times `high` plus `low`, summed over
+/// lanes. For up to 65,536 particles in each lane.
 struct PullSum {
   vec_int4 high[3];
   vec_uint4 low[3];
-  vec_uint4 far;  ///< top bit set: a pull is too far for its unit, and the sum means nothing
+  vec_uint4 far;  ///< top bit set: a pull is too large for the unit, and the sum is useless
 };
 constexpr uint32_t kPullSumWords = 28;
 static_assert(sizeof(PullSum) == 4 * kPullSumWords, "seven quadwords");
@@ -30,8 +30,7 @@ inline PullSum no_pulls() {
   return {{zero, zero, zero}, {none, none, none}, none};
 }
 
-/// Copies a sum member by member: of a whole structure some compilers make a call of memcpy(), which a local store
-/// has not.
+/// Copies a sum member by member: for a whole structure some compilers call memcpy(), and there is none in a local store.
 inline void copy_sum(const PullSum& from, PullSum& to) {
   to.high[0] = from.high[0];
   to.high[1] = from.high[1];
@@ -42,7 +41,7 @@ inline void copy_sum(const PullSum& from, PullSum& to) {
   to.far = from.far;
 }
 
-/// Truncation of the units would be the very error that the sum is to take away.
+/// Rounds to the nearest integers. Truncation would be the very error that the sum shall remove.
 inline vec_int4 to_nearest(vec_float4 units) {
   const vec_int4 halves = spu_convts(units, 1);
   return spu_rlmaska(spu_add(spu_add(halves, 1), spu_rlmaska(halves, -31)), -1);
@@ -60,7 +59,7 @@ inline void add_pulls(PullSum& sum, const Vector3x4& to_goal, vec_float4 weight)
   }
 }
 
-/// Moves what `low` has above 16 bits to `high`, so that 65,536 such sums may be added up.
+/// Moves the bits of `low` above 16 to `high`, so that 65,536 such sums can be added.
 inline void carry(PullSum& sum) {
   for (int d = 0; d < 3; ++d) {
     sum.high[d] = spu_add(sum.high[d], (vec_int4)spu_rlmask(sum.low[d], -16));
@@ -68,7 +67,7 @@ inline void carry(PullSum& sum) {
   }
 }
 
-/// @pre both are carried, or few
+/// @pre `low` does not overflow: carry() was called for both sums, or they have few particles
 inline void add_sums(PullSum& sum, const PullSum& other) {
   for (int d = 0; d < 3; ++d) {
     sum.high[d] = spu_add(sum.high[d], other.high[d]);
@@ -77,7 +76,7 @@ inline void add_sums(PullSum& sum, const PullSum& other) {
   sum.far = spu_or(sum.far, other.far);
 }
 
-/// The velocity that all pulls together give the body, to be taken off again.
+/// The velocity that all pulls together give the body, which has to be subtracted.
 /// @param share  MatchHold::share times the pull, 1 / s
 inline Vector3x4 drift_of(const PullSum& pulls, float share) {
   PullSum sum;

@@ -1,5 +1,5 @@
 #pragma once
-// Where the kernel `match` keeps a plan and one body's state, and how particles and regions look there.
+// The layout of a plan and one body's state in the local store of the kernel `match`.
 
 #include <spu_intrinsics.h>
 #include <stdint.h>
@@ -9,14 +9,14 @@
 
 namespace softcell::spu {
 
-/// A payload: three rows of four words. Going up for matching, row k is sum m~ x_k (x0 y0 z0 1); coming down,
-/// row k of (R | t).
+/// A payload: three rows of four words. For matching, row k is sum m~ x_k (x0 y0 z0 1) on the way from particles to regions, and row k of
+/// (R | t) on the way back.
 struct Slot {
   vec_float4 row[3];
 };
 static_assert(sizeof(Slot) == kMatchSlotBytes, "as offsets count it");
 
-/// A payload of two rows: what comes down for damping, where slots are made for nothing else.
+/// A payload of two rows: that of damping on the way from regions to particles, in `match_tiles`, which has slots for this purpose alone.
 struct TwistSlot {
   vec_float4 row[2];
 };
@@ -40,24 +40,24 @@ struct RegionConstants {
 };
 static_assert(sizeof(RegionConstants) == sizeof(MatchRegions), "the same bytes");
 
-/// Positions or velocities of four particles. As they come from main memory a quadword is a particle;
-/// localise.h turns them, and a quadword is a component.
+/// Positions or velocities of four particles. In main memory each quadword is a particle; localise.h transposes them, and then each
+/// quadword is a component of all four.
 struct Vectors4 {
   Vector3x4 v;
   vec_float4 spare;
 };
 
-/// The parts of the arena, one behind the other. Pointers are made here and never stored in static data.
+/// The parts of the arena, one after the other. The pointers are computed at run time and never stored in static data.
 struct BodyMap {
   const ParticleConstants* particles;
   const RegionConstants* regions;
   const uint16_t *bars_of_particles, *bars_of_regions, *plates, *regions_of_plates;
   uint32_t particle_groups, region_groups;
-  float noise_floor;  // the header's
+  float noise_floor;  // of the plan's header
   MatchHold hold;
 
   Vectors4* positions;  // relative to the body's origin
-  MatchResult* result;  // the state: this and the next two, one behind the other
+  MatchResult* result;  // result, velocities and rotations are the state, one after the other
   Vectors4* velocities;
   Quaternion4* rotations;
   Vector3x4* momenta;    // of each region: sum m~ x

@@ -1,5 +1,5 @@
 #pragma once
-// Positions about a point in the body, and particles' records as components in lanes.
+// Makes positions relative to a point in the body, and transposes particles' records to components in lanes.
 
 #include <spu_intrinsics.h>
 #include <stdint.h>
@@ -10,7 +10,7 @@
 
 namespace softcell::spu {
 
-/// A quadword to a particle, as they come from main memory.
+/// The same memory with one quadword for each particle, as it comes from main memory.
 inline vec_float4* particle_quadwords(Vectors4* groups) { return reinterpret_cast<vec_float4*>(groups); }
 
 /// The mean of kMatchSamples positions, a quadword each, rounded to the grid.
@@ -20,7 +20,7 @@ inline vec_float4 origin_of(const vec_float4* x, float grid) {
   return rounded_to_grid(spu_madd(sum, spu_splats(kShare), x[0]), grid);
 }
 
-/// Turns groups of four quadwords, a particle each, into groups of components, `origin` subtracted. Lanes
+/// Transposes groups of four particles to groups of components, and subtracts `origin`. Lanes
 /// past `count` become zero.
 inline void to_components(Vectors4* groups, uint32_t count, vec_float4 origin) {
   vec_float4* const x = particle_quadwords(groups);
@@ -33,7 +33,7 @@ inline void to_components(Vectors4* groups, uint32_t count, vec_float4 origin) {
   }
 }
 
-/// Back again: a quadword to a particle, its fourth word zero.
+/// Transposes back, to one quadword for each particle, whose fourth word is zero.
 inline void to_particles(Vectors4* groups, uint32_t group_count) {
   vec_float4* const x = particle_quadwords(groups);
   for (uint32_t g = 0; g < group_count; ++g) {

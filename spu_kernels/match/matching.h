@@ -1,5 +1,5 @@
 #pragma once
-// Shape matching between the sums: what goes up, the region's best rigid motion, what comes down.  [LSM07]
+// The arithmetic of shape matching between the sums: the payload of a particle, the best rigid motion of a region, and the goals.  [LSM07]
 //
 //   up      row k of a slot:   m~ x_k (x0, y0, z0, 1)
 //   region  c = P / M,  A = sum m~ x x0^T - P c0^T,  R = rotation of A,  t = c - R c0
@@ -15,7 +15,7 @@
 
 namespace softcell::spu {
 
-/// Four particles' payload.
+/// Computes the payload of four particles.
 inline void match_moments(const RestMoments& rest_moment, const Vector3x4& x, Slot* out) {
   const auto particle = [&](int lane) __attribute__((always_inline)) {
     const vec_float4 moment = rest_moment[lane];
@@ -29,7 +29,7 @@ inline void match_moments(const RestMoments& rest_moment, const Vector3x4& x, Sl
   particle(3);
 }
 
-/// Row `k` of four slots, as registers of four lanes.
+/// Row `k` of four slots, transposed: one component of all four slots in each register.
 inline Rows4 load_row(const Slot* slots, int k) {
   return transpose({slots[0].row[k], slots[1].row[k], slots[2].row[k], slots[3].row[k]});
 }
@@ -43,11 +43,11 @@ inline void store_row(AnySlot* slots, int k, const Rows4& components) {
   slots[3].row[k] = t.d;
 }
 
-/// Four regions' sums, in the place of their four slots: A, and in the payload P = sum m~ x.
+/// The rotation problem of four regions in the place of four slots: A, and as payload P = sum m~ x.
 inline RotationProblem* problem_at(Slot* slots) { return reinterpret_cast<RotationProblem*>(slots); }
 static_assert(sizeof(RotationProblem) == 4 * sizeof(Slot), "one takes the other's place");
 
-/// Sums of four regions to A and P, in the place of four slots: their own, or others.
+/// Computes A and P of four regions from their sums, in the place of four slots: the sums' own, or others.
 __attribute__((always_inline)) inline void make_problem(const RegionConstants& r, const Slot* sums,
                                                         Slot* slots, vec_float4 noise_floor) {
   const Rows4 x = load_row(sums, 0), y = load_row(sums, 1), z = load_row(sums, 2);
@@ -59,7 +59,7 @@ __attribute__((always_inline)) inline void make_problem(const RegionConstants& r
                         {x.d, y.d, z.d}};
 }
 
-/// R and P of four regions to their motions, in the place of the problem they come from.
+/// Computes the motions (R | t) of four regions from R and P, in the place of their rotation problem.
 __attribute__((always_inline)) inline void store_motions(const RegionConstants& r, const Matrix3x4& rotation,
                                                          const Vector3x4& momentum, Slot* slots) {
   const auto store = [&](int k, const Vector3x4& row, vec_float4 moment) __attribute__((always_inline)) {
@@ -72,7 +72,7 @@ __attribute__((always_inline)) inline void store_motions(const RegionConstants& 
 }
 
 /// The goals of four particles.
-/// @param region  offsets of their regions' totals
+/// @param region  offsets of the totals of their regions
 inline Vector3x4 goals(const RestMoments& rest_moment, vec_float4 inverse_mass, const uint32_t (&region)[4],
                        const Slot* totals) {
   const Slot &a = slot_at(totals, region[0]), &b = slot_at(totals, region[1]);

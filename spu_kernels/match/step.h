@@ -1,5 +1,5 @@
 #pragma once
-// One body's step in local store: matching, then damping. Positions stay, velocities change.
+// One body's step in local store: matching, then damping. It changes velocities, not positions.
 //
 //   first             second             (the two buffers, slot by slot)
 //   particles   -->   bars
@@ -7,8 +7,8 @@
 //               -->   regions: sums become motions in place
 //   bars        <--
 //               -->   plates
-//   totals      <--                      goals, new velocities, the body held
-//               -->   particles          and the same way again for damping, buffers exchanged
+//   totals      <--                      goals and new velocities; the drift is subtracted (hold.h)
+//               -->   particles          the same again for damping, with the buffers exchanged
 
 #include "common/sums.h"
 #include "match/damping.h"
@@ -19,15 +19,15 @@
 
 namespace softcell::spu {
 
-/// From particles in `a` to regions in `b`.
+/// Sums from particles in `a` to regions in `b`.
 inline void sum_up(const BodyMap& map, Slot* a, Slot* b) {
   sum_slots<3>(map.bars_of_particles, a, b);
   sum_slots<3>(map.plates, b, a);
   sum_slots<3>(map.regions_of_plates, a, b);
 }
 
-/// From regions in `b` to the totals of each region's particles in `a`. Membership is symmetric, so the same
-/// lists do, but for the first.
+/// Sums from regions in `b` to totals in `a`: the sums over all regions of which a particle is a member. Membership is symmetric, so the
+/// lists are the same as in sum_up(), except the first.
 template <int kRows>
 inline void sum_down(const BodyMap& map, Slot* b, Slot* a) {
   sum_slots<kRows>(map.bars_of_regions, b, a);
@@ -41,11 +41,11 @@ struct StepOptions {
   bool cold;
 };
 
-/// Sums of regions to their motions. In blocks that are small enough for the first-level cache of a host and
+/// Computes the motions of regions from their sums, in blocks that are small enough for a host's first-level cache and
 /// long enough to overlap iterations.
 /// @param motions  four slots for each of `groups`: those of the sums, or others
-/// @param keep     is told each group's sum m~ x: keep(group, momentum)
-/// @param worst   becomes the largest square of a rotation's residual in each lane
+/// @param keep     is called for each group with its sum m~ x: keep(group, momentum)
+/// @param worst    becomes the largest square of a rotation's residual in each lane
 template <typename Keep>
 inline void match_regions(const RegionConstants* regions, Quaternion4* rotations, const Slot* sums,
                           Slot* motions, uint32_t groups, vec_float4 noise_floor, const StepOptions& options,
@@ -72,7 +72,7 @@ inline void match_regions(const RegionConstants* regions, Quaternion4* rotations
   }
 }
 
-/// From sums of motions to velocities: v += pull (g - x); less what that gives the body as a whole.
+/// Changes velocities by the totals: v += pull (g - x), minus the velocity that this would give the body as a whole.
 inline void pull_particles(const BodyMap& map, const Slot* totals, float pull) {
   const vec_float4 pull4 = spu_splats(pull), scale4 = spu_splats(map.hold.scale);
   PullSum pulls = no_pulls();
@@ -88,8 +88,8 @@ inline void pull_particles(const BodyMap& map, const Slot* totals, float pull) {
     map.velocities[g].v = difference(map.velocities[g].v, drift);
 }
 
-/// @pre    positions and velocities in components, positions about the body's origin; both buffers' slot 0 is
-///         zero
+/// Steps one body.
+/// @pre    positions and velocities are in components, positions relative to the body's origin; slot 0 of both buffers is zero
 /// @return the largest square of a rotation's residual in each lane
 inline vec_float4 step_body(const BodyMap& map, const StepOptions& options) {
   Slot *const a = map.first, *const b = map.second;

@@ -1,6 +1,6 @@
 #pragma once
-// The four passes of the kernel `match_tiles`, a slice at a time: what to fetch, what to do with it.
-// match_tiles_job.h has the whole.
+// The four passes of the kernel `match_tiles`: what each pass fetches, computes and stores for a slice. match_tiles_job.h describes how the
+// passes work together.
 
 #include "common/dma.h"
 #include "common/finite.h"
@@ -14,23 +14,23 @@
 
 namespace softcell::spu {
 
-/// A tag group for each side of the double buffer, and one for what has a place of its own to leave from.
+/// Tag groups: one for each side of the double buffer, one for results that are stored from a place of their own, one for hints.
 enum TileTag : uint32_t { kTagSide0 = 0, kTagSide1 = 1, kTagOut = 2, kTagTouch = 3 };
 
 constexpr uint32_t kPulledBytes = sizeof(TilePulled);
 
-/// A stretch of main memory.
+/// A range of main memory.
 struct Range {
   uint64_t ea;
   uint32_t bytes;
 };
 
-/// What an array of main memory has for a slice's input, `bytes` for each group of four places.
+/// The part of an array in main memory that is a slice's input. @param bytes  of a group of four particles or regions
 inline Range input_of(const TileSlice& slice, uint64_t array_ea, uint32_t bytes) {
   return {array_ea + static_cast<uint64_t>(slice.input / 4) * bytes, slice.input_groups * bytes};
 }
 
-/// Likewise for its output.
+/// The part that is its output.
 inline Range output_of(const TileSlice& slice, uint64_t array_ea, uint32_t bytes) {
   return {array_ea + static_cast<uint64_t>(slice.output / 4) * bytes, slice.output_groups * bytes};
 }
@@ -45,8 +45,8 @@ inline void put_range(void* ls, const Range& range, uint32_t tag) {
   put_large(ls, range.ea, range.bytes, tag);
 }
 
-/// Hints to main memory: what the slice after next will fetch and the next will put out. Given a few at a
-/// time between pieces of work, so that memory has them ready without anybody having waited.
+/// Hints for main memory: the ranges that the slice after the next will fetch, and those that the next will store. The kernel gives a few
+/// hints at a time between pieces of work, so that nothing waits for them.
 class Touches {
  public:
   /// @pre there are fewer than kMost
@@ -58,7 +58,7 @@ class Touches {
     for (int i = 0; i < kAtOnce; ++i) give_one();
   }
 
-  /// @pre all are given, or will never be
+  /// Discards all hints, also those that were not given.
   void clear() { count_ = next_ = 0; }
 
   void give_all() {
@@ -78,26 +78,26 @@ class Touches {
   uint32_t count_ = 0, next_ = 0;
 };
 
-/// What all passes know of the body.
+/// The body, and what all passes need of it.
 struct TilePassContext {
-  /// Member by member: for a list of initialisers some compilers make a call of memset(), which a local store has not.
+  /// Sets members one by one: for a list of initialisers some compilers call memset(), and there is none in a local store.
   TilePassContext(const TiledBody& of, vec_float4 about) : body(of), origin(about) {
     drift.x = drift.y = drift.z = spu_splats(0.0f);
   }
 
   const TiledBody& body;
   vec_float4 origin;
-  Vector3x4 drift;  // what the pulls have given the body as a whole; not before `twist`
+  Vector3x4 drift;  // m/s: the velocity that pulls have given the body as a whole; known from `twist` on
 };
 
 inline const uint16_t* list_at(const char* lists, uint32_t offset) {
   return reinterpret_cast<const uint16_t*>(lists + offset);
 }
 
-/// Bars, plates and what they are for, slots to slots.
+/// Makes the sums of a slice: bars, plates, and then regions or totals.
 template <int kRows, typename AnySlot>
 inline void sum_slice(const TileSlice& slice, const char* lists, AnySlot* slots, Touches& touches) {
-  // A list writes behind what it is given.
+  // A list writes from the slot after the given one.
   const char* const bars = lists + slice.bars_list;
   touches.give_some();
   sum_slots<kRows>(list_at(bars, 0), slots, slots + slice.bars_slot - 1);
@@ -127,7 +127,7 @@ class GatherPass {
     get_range(side.regions, output_of(slice, body_.regions_ea, 64), s);
   }
 
-  static bool fetches(const TileSlice&) { return true; }  // its lists, at least
+  static bool fetches(const TileSlice&) { return true; }  // at least its lists
 
   void touch(const TileSlice& coming, const TileSlice& leaving, Touches& touches) const {
     touches.add(input_of(coming, body_.positions_ea, 64));
@@ -288,8 +288,7 @@ class ScatterPass {
   bool finite_ = true;
 };
 
-/// damp: twists of regions to velocities; or, where there is no damping, what `scatter` has left less the
-/// drift.
+/// damp: twists of regions to velocities; or, without damping, the velocities of `scatter` minus the drift.
 class DampPass {
  public:
   DampPass(const TilePassContext& context, const DownStore& store)
@@ -304,7 +303,7 @@ class DampPass {
     get_range(slots() + slice.input_slot, input_of(slice, body.motions_ea, 4 * kTwistSlotBytes), s);
   }
 
-  /// Without damping, a slice that comes before the tile's first output, or between two, needs nothing.
+  /// Without damping, a slice without output needs nothing.
   bool fetches(const TileSlice& slice) const { return damping_ || slice.output_groups != 0; }
 
   void touch(const TileSlice& coming, const TileSlice& leaving, Touches& touches) const {
@@ -329,7 +328,7 @@ class DampPass {
   }
 
  private:
-  /// Slots of two rows, in the place of the others.
+  /// The store's slots, as slots of two rows.
   TwistSlot* slots() const { return reinterpret_cast<TwistSlot*>(store_.slots); }
 
   const TilePassContext& context_;
@@ -337,8 +336,8 @@ class DampPass {
   const bool damping_;
 };
 
-/// All slices of a tile, the next on its way while one is worked on. What the one before puts out from a
-/// place of its own has left by then.
+/// Runs a pass over all slices of a tile. While it works on a slice, the MFC fetches the next. Before that it waits until the results of
+/// the slice before have been stored, because they have one place only.
 template <typename Pass>
 inline void run_slices(Pass& pass, const TileSlice* slices, uint32_t count) {
   Touches touches;
@@ -348,8 +347,7 @@ inline void run_slices(Pass& pass, const TileSlice* slices, uint32_t count) {
     touches.clear();
     if (i + 2 < count) pass.touch(slices[i + 2], slices[i + 1], touches);
     if (i + 1 < count) pass.fetch(slices[i + 1], s ^ 1);
-    // A wait for tag groups that have had no command would be legal, and over at once; but then it is most
-    // often a mistake, and the checker reports it.
+    // A wait for tag groups without commands would be legal and end at once. But it is mostly a mistake, so the checker reports it.
     const bool awaits_puts = i > 0 && slices[i - 1].output_groups != 0;
     if (pass.fetches(slices[i]) || awaits_puts) wait_for_tags(1u << s | 1u << kTagOut);
     pass.work(slices[i], s, touches);

@@ -1,5 +1,5 @@
 #pragma once
-// Where the kernel `match_tiles` keeps a slice and what goes on from slice to slice.
+// The layout of the local store of the kernel `match_tiles`: two slices, results, and the slots that continue from slice to slice.
 
 #include "match/local_store.h"
 #include "match_tiles_job.h"
@@ -31,9 +31,9 @@ struct UpSide {
   char* lists;
   Vectors4* positions;         // gather
   RestMoments* rest;           // gather
-  Pulled4* pulled;             // twist, in the place of both
+  Pulled4* pulled;             // twist, in the place of positions and rest
   RegionConstants* regions;    // gather
-  MomentumConstants* momenta;  // twist, in the same place
+  MomentumConstants* momenta;  // twist, in the place of regions
   Quaternion4* rotations;      // gather
 };
 
@@ -44,10 +44,10 @@ struct DownSide {
   Vectors4* velocities;      // scatter
   RestMoments* rest;         // scatter
   WeightConstants* weights;  // scatter
-  Pulled4* pulled;           // damp, in the place of the first two
+  Pulled4* pulled;           // damp, in the place of positions and velocities
 };
 
-/// Hands out parts of the arena, one behind the other.
+/// Allocates parts of the arena, one after the other.
 class Arena {
  public:
   explicit Arena(char* begin) : free_(begin) {}

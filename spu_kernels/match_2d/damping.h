@@ -1,5 +1,6 @@
 #pragma once
-// Region damping between the sums: what goes up, the region's rigid motion, what comes down.
+// The arithmetic of region damping between the sums: the payload of a particle, the rigid motion of a region, and what becomes of the sums
+// of motions.
 // [Mueller et al. 2006, section 3.5, per region]
 //
 //   up      (m~v, m~ x x v, m~ |x|^2)                            of a particle
@@ -15,21 +16,21 @@
 
 namespace softcell::spu {
 
-/// Four particles' payload.
+/// Computes the payload of four particles.
 inline void twist_moments(const ParticleConstants2d& p, const Vector2x4& x, const Vector2x4& v, Slot2d* out) {
   const Vector2x4 momentum = scale(v, p.modified_mass);
   store_slots(out, {momentum.x, momentum.y, cross(x, momentum), spu_mul(p.modified_mass, dot(x, x))});
 }
 
 /// Angular momentum over moment of inertia, both per mass.
-/// @param noise_floor  inertias up to this are noise: what is on one point does not turn
+/// @param noise_floor  inertias up to this are noise: particles on one point do not turn
 inline vec_float4 angular_velocity(vec_float4 momentum, vec_float4 inertia, vec_float4 noise_floor) {
   const vec_uint4 turns = negative_lanes(less(noise_floor, inertia));
   return (vec_float4)spu_and((vec_uint4)spu_mul(momentum, reciprocal(inertia)), turns);
 }
 
-/// Sums of four regions to their twists, in place.
-/// @param centre  as match_regions() left it
+/// Computes the twists of four regions from their sums, in place.
+/// @param centre  from match_regions()
 inline void twist_regions(const RegionConstants2d& r, const Vector2x4& centre, Slot2d* slots,
                           vec_float4 noise_floor) {
   const Rows4 sums = load_slots(slots);
@@ -41,7 +42,7 @@ inline void twist_regions(const RegionConstants2d& r, const Vector2x4& centre, S
                       spu_splats(0.0f)});
 }
 
-/// The velocities of four particles, less `damping` times what is not rigid motion of their regions.
+/// The velocities of four particles, minus `damping` times the part that is not the rigid motion of their regions.
 inline Vector2x4 damp(const ParticleConstants2d& p, const Slot2d* totals, const Vector2x4& x,
                       const Vector2x4& v, vec_float4 damping) {
   const Rows4 sum = load_totals(p, totals);

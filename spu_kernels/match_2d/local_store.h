@@ -1,5 +1,5 @@
 #pragma once
-// Where the kernel `match_2d` keeps a plan and the body it steps, and how particles and regions look there.
+// The layout of a plan and two bodies in the local store of the kernel `match_2d`.
 
 #include <spu_intrinsics.h>
 #include <stdint.h>
@@ -10,7 +10,7 @@
 
 namespace softcell::spu {
 
-/// A payload. Going up for matching: m~x, m~y, m~ x.x0, m~ x0 x x; coming down: t, cos, sin.
+/// A payload. For matching: m~x, m~y, m~ x.x0, m~ x0 x x on the way from particles to regions; t, cos, sin on the way back.
 struct Slot2d {
   vec_float4 row[1];
 };
@@ -32,19 +32,19 @@ struct RegionConstants2d {
 static_assert(sizeof(RegionConstants2d) == sizeof(MatchRegions2d), "the same bytes");
 static_assert(sizeof(Direction4) == sizeof(MatchDirections), "the same bytes");
 
-/// What all bodies of a model share. Pointers are made here and never stored in static data.
+/// The data that all bodies of a model share. The pointers are computed at run time and never stored in static data.
 struct PlanMap2d {
   const ParticleConstants2d* particles;
   const RegionConstants2d* regions;
   const uint16_t *bars_of_particles, *bars_of_regions, *regions_of_bars;
   uint32_t particle_groups, region_groups;
-  float noise_floor, inverse_mass;  // the header's
+  float noise_floor, inverse_mass;  // of the plan's header
 
   Vector2x4* centres;      // of each region
   Slot2d *first, *second;  // the two buffers
 };
 
-/// One body's data, as they come from main memory; localise.h turns pairs of particles into components.
+/// The data of one body. They come from main memory as pairs of particles; localise.h turns these into components.
 struct BodyMap2d {
   Vector2x4* positions;  // relative to the body's origin
   MatchResult2d* result;

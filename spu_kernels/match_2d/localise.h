@@ -1,5 +1,5 @@
 #pragma once
-// Positions about a point in the body, and pairs of particles as components in lanes.
+// Makes positions relative to a point in the body, and turns pairs of particles into components in lanes.
 
 #include <spu_intrinsics.h>
 #include <stdint.h>
@@ -10,7 +10,7 @@
 
 namespace softcell::spu {
 
-/// A quadword to two particles, as they come from main memory.
+/// The same memory with one quadword for each two particles, as it comes from main memory.
 inline vec_float4* particle_pairs(Vector2x4* groups) { return reinterpret_cast<vec_float4*>(groups); }
 
 /// x0 y0 x0 y0, and x1 y1 x1 y1.
@@ -23,14 +23,14 @@ inline vec_float4 second_of_pair(vec_float4 pair) {
   return spu_shuffle(pair, pair, high);
 }
 
-/// Gives the particles past `count` in the last group the value of `v`, one pair of equals.
+/// Sets the particles past `count` in the last group. @param v  their value, twice
 inline void pad_pairs(vec_float4* pairs, uint32_t count, vec_float4 v) {
   const vec_uchar16 keep_first = {0, 1, 2, 3, 4, 5, 6, 7, 24, 25, 26, 27, 28, 29, 30, 31};
   if (count % 2 != 0) pairs[count / 2] = spu_shuffle(pairs[count / 2], v, keep_first);
   for (uint32_t i = (count + 1) / 2; i < 2 * groups_of(count); ++i) pairs[i] = v;
 }
 
-/// The mean of `count` positions, rounded to the grid, twice in a quadword. @pre  padded with the first
+/// The mean of `count` positions, rounded to the grid, twice in a quadword. @pre  the last group is padded with the first position
 /// @param inverse_count  1 / count
 inline vec_float4 origin_of_pairs(const vec_float4* pairs, uint32_t count, float inverse_count, float grid) {
   const vec_float4 base = first_of_pair(pairs[0]);
@@ -39,7 +39,7 @@ inline vec_float4 origin_of_pairs(const vec_float4* pairs, uint32_t count, float
   return rounded_to_grid(spu_madd(both, spu_splats(inverse_count), base), grid);
 }
 
-/// Two quadwords of pairs, less `origin`, as components.
+/// Two quadwords of pairs, minus `origin`, as components.
 inline Vector2x4 components_of(vec_float4 first, vec_float4 second, vec_float4 origin) {
   const vec_uchar16 even = {0, 1, 2, 3, 8, 9, 10, 11, 16, 17, 18, 19, 24, 25, 26, 27};
   const vec_uchar16 odd = {4, 5, 6, 7, 12, 13, 14, 15, 20, 21, 22, 23, 28, 29, 30, 31};
@@ -47,12 +47,12 @@ inline Vector2x4 components_of(vec_float4 first, vec_float4 second, vec_float4 o
   return {spu_shuffle(a, b, even), spu_shuffle(a, b, odd)};
 }
 
-/// Turns groups of pairs into groups of components, `origin` subtracted.
+/// Turns groups of pairs into groups of components, and subtracts `origin`.
 inline void to_components(Vector2x4* groups, uint32_t group_count, vec_float4 origin) {
   for (uint32_t g = 0; g < group_count; ++g) groups[g] = components_of(groups[g].x, groups[g].y, origin);
 }
 
-/// Back again.
+/// Turns groups of components back into groups of pairs.
 inline void to_pairs(Vector2x4* groups, uint32_t group_count) {
   for (uint32_t g = 0; g < group_count; ++g) {
     const Vector2x4 v = groups[g];

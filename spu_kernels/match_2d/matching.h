@@ -1,5 +1,5 @@
 #pragma once
-// Shape matching between the sums: what goes up, the region's best rigid motion, what comes down.  [LSM07]
+// The arithmetic of shape matching between the sums: the payload of a particle, the best rigid motion of a region, and the goals.  [LSM07]
 //
 //   up      (m~x, m~y, m~ x.x0, m~ x0 x x)                       of a particle
 //   region  c = P / M,  C = sum3 - P.c0,  S = sum4 - c0 x P,  (cos, sin) = (C, S) / |(C, S)|,  t = c - R c0
@@ -14,7 +14,7 @@
 
 namespace softcell::spu {
 
-/// Four slots, one behind the other, as registers of four lanes.
+/// Four adjacent slots, transposed: one component of all four slots in each register.
 inline Rows4 load_slots(const Slot2d* slots) {
   return transpose({slots[0].row[0], slots[1].row[0], slots[2].row[0], slots[3].row[0]});
 }
@@ -27,20 +27,20 @@ inline void store_slots(Slot2d* slots, const Rows4& components) {
   slots[3].row[0] = t.d;
 }
 
-/// What has come down to four particles' regions.
+/// The totals of the regions of four particles.
 inline Rows4 load_totals(const ParticleConstants2d& p, const Slot2d* totals) {
   return transpose({slot_at(totals, p.region[0]).row[0], slot_at(totals, p.region[1]).row[0],
                     slot_at(totals, p.region[2]).row[0], slot_at(totals, p.region[3]).row[0]});
 }
 
-/// Four particles' payload.
+/// Computes the payload of four particles.
 inline void match_moments(const ParticleConstants2d& p, const Vector2x4& x, Slot2d* out) {
   const Vector2x4 moment = scale(x, p.modified_mass);
   store_slots(out, {moment.x, moment.y, dot(moment, p.rest), cross(p.rest, moment)});
 }
 
-/// Sums of four regions to their motions, in place.
-/// @param direction  in: last step's; out: this one's
+/// Computes the motions of four regions from their sums, in place.
+/// @param direction  in: of the last step; out: of this step
 /// @param centre     out: c
 inline void match_regions(const RegionConstants2d& r, Slot2d* slots, vec_float4 noise_floor,
                           Direction4& direction, Vector2x4& centre) {
@@ -54,8 +54,7 @@ inline void match_regions(const RegionConstants2d& r, Slot2d* slots, vec_float4 
   store_slots(slots, {t.x, t.y, direction.cosine, direction.sine});
 }
 
-/// From four particles to their goals: g - x. A goal is never rounded by itself, so that particles where they
-/// belong stay there.
+/// g - x of four particles. The goal g is not rounded by itself, so that particles at their goals stay there.
 inline Vector2x4 to_goals(const ParticleConstants2d& p, const Slot2d* totals, const Vector2x4& x) {
   const Rows4 sum = load_totals(p, totals);
   const Vector2x4 goals = add_turned({sum.a, sum.b}, {sum.c, sum.d}, p.rest);

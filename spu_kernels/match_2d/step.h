@@ -1,12 +1,12 @@
 #pragma once
-// One body's step in local store: matching, then damping. Positions stay, velocities change.
+// One body's step in local store: matching, then damping. It changes velocities, not positions.
 //
 //   first             second             (the two buffers, slot by slot)
 //   particles   -->   bars
 //   regions     <--                      sums become motions in place
 //               -->   bars
-//   totals      <--                      goals, new velocities, momenta held
-//   particles   ...                      and the same way again for damping
+//   totals      <--                      goals and new velocities; drift and spin are subtracted
+//   particles   ...                      the same again for damping
 
 #include "common/sums.h"
 #include "match_2d/damping.h"
@@ -15,20 +15,20 @@
 
 namespace softcell::spu {
 
-/// From particles to regions, all in `first`.
+/// Sums from particles to regions, both in `first`.
 inline void sum_up(const PlanMap2d& plan) {
   sum_slots<1>(plan.bars_of_particles, plan.first, plan.second);
   sum_slots<1>(plan.regions_of_bars, plan.second, plan.first);
 }
 
-/// From regions to the totals of each region's particles. Membership is symmetric, so the same lists do, but
-/// for the first.
+/// Sums from regions to totals: the sums over all regions of which a particle is a member. Membership is symmetric, so the lists are the
+/// same as in sum_up(), except the first.
 inline void sum_down(const PlanMap2d& plan) {
   sum_slots<1>(plan.bars_of_regions, plan.first, plan.second);
   sum_slots<1>(plan.regions_of_bars, plan.second, plan.first);
 }
 
-/// Sums over particles, in each lane those of its own: d = g - x.
+/// Sums over particles, with d = g - x. Each lane has the sum over its own particles.
 struct PullSums {
   Vector2x4 moved;     ///< m d
   Vector2x4 moment;    ///< m x
@@ -36,7 +36,7 @@ struct PullSums {
   vec_float4 inertia;  ///< m |x|^2
 };
 
-/// From sums of motions to velocities: v += pull (g - x).
+/// Changes velocities by the totals: v += pull (g - x).
 inline PullSums pull_particles(const PlanMap2d& plan, const BodyMap2d& body, vec_float4 pull) {
   const vec_float4 zero = spu_splats(0.0f);
   PullSums sums = {{zero, zero}, {zero, zero}, zero, zero};
@@ -52,9 +52,8 @@ inline PullSums pull_particles(const PlanMap2d& plan, const BodyMap2d& body, vec
   return sums;
 }
 
-/// Takes off the velocities what the pull has given the body as a whole: the motion b + omega (-y, x). It
-/// should be nothing and is a rounding error; but truncation errs to one side, and a body at rest would begin
-/// to drift and to spin.
+/// Subtracts from the velocities the motion that the pull has given the body as a whole: b + omega (-y, x). It is only a rounding error,
+/// but truncation always errs in the same direction, so a body at rest would begin to drift and to spin.
 inline void hold_momenta(const PlanMap2d& plan, const BodyMap2d& body, const PullSums& sums,
                          vec_float4 pull) {
   const vec_float4 by = spu_splats(plan.inverse_mass);
@@ -82,7 +81,7 @@ inline void match_body(const PlanMap2d& plan, const BodyMap2d& body, float pull)
   hold_momenta(plan, body, pull_particles(plan, body, spu_splats(pull)), spu_splats(pull));
 }
 
-/// @pre  match_body() has left the centres of the regions.
+/// @pre  match_body() has computed the centres of the regions
 inline void damp_body(const PlanMap2d& plan, const BodyMap2d& body, float damping) {
   for (uint32_t g = 0; g < plan.particle_groups; ++g)
     twist_moments(plan.particles[g], body.positions[g], body.velocities[g], plan.first + 1 + 4 * g);
@@ -95,8 +94,7 @@ inline void damp_body(const PlanMap2d& plan, const BodyMap2d& body, float dampin
         damp(plan.particles[g], plan.first, body.positions[g], body.velocities[g], spu_splats(damping));
 }
 
-/// @pre  positions and velocities in components, positions about the body's origin; both buffers' slot 0 is
-///       zero
+/// @pre  positions and velocities are in components, positions relative to the body's origin; slot 0 of both buffers is zero
 inline void step_body(const PlanMap2d& plan, const BodyMap2d& body, float pull, float damping) {
   match_body(plan, body, pull);
   if (damping > 0) damp_body(plan, body, damping);

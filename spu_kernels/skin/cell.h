@@ -59,12 +59,14 @@ inline Component evaluate(const Polynomial& p, vec_float4 xi, vec_float4 eta, ve
   return {position, f1, f2, f3};
 }
 
-/// In m^2: against the squared size of a cell, nothing.
+/// m^2: negligible against the squared size of a cell.
 constexpr float kFlat = 1e-12f;
 
-/// cof(F) N + kFlat N, not of unit length: where the cell is flat and cof(F) vanishes, N is left, without a
-/// choice to be made. With F's columns f1 f2 f3, cof(F) N = Nx f2 x f3 + Ny f3 x f1 + Nz f1 x f2 = f2 x (Nx
-/// f3 - Nz f1) + Ny f3 x f1.
+/// cof(F) N + kFlat N, not of unit length. In a flat cell, where cof(F) is zero, N remains, without a branch.
+/// With the columns f1 f2 f3 of F:
+///
+///   cof(F) N = Nx f2 x f3 + Ny f3 x f1 + Nz f1 x f2 = f2 x (Nx f3 - Nz f1) + Ny f3 x f1
+///
 /// @param rest  N, the rest normal
 inline Vector3x4 deformed_normal(const Vector3x4& f1, const Vector3x4& f2, const Vector3x4& f3,
                                  const Vector3x4& rest) {

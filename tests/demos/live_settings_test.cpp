@@ -231,7 +231,9 @@ TEST(LiveSettings, ARecordingRefusesNumbersOutOfTheirRange) {
     return "";
   };
   EXPECT_EQ(refusal("0 alpha all 1.5"), "line 5: alpha is 1.5; it must be a number from 0 to 1");
-  EXPECT_EQ(refusal("0 substeps 2.5"), "line 5: substeps is 2.5; it must be a whole number from 1 to 32");
+  EXPECT_EQ(refusal("0 substeps 2.5"), "line 5: substeps is 2.5; it must be a whole number from 1 to 64");
+  EXPECT_EQ(refusal("0 substeps 65"), "line 5: substeps is 65; it must be a whole number from 1 to 64");
+  EXPECT_EQ(refusal("0 substeps 64").find("substeps"), std::string::npos) << "a scene file may have as many";
   EXPECT_EQ(refusal("0 time_scale 0"), "line 5: time_scale is 0; it must be a number from 0.02 to 4");
   EXPECT_EQ(refusal("0 damping all"), "line 5: a number is missing");
 }

@@ -133,7 +133,7 @@ TEST(WriteToml, IsReadAsTheSame) {
 }
 
 TEST(WriteToml, RefusesWhatIsNotUtf8) {
-  const Value value{.data = Table{{"title", {.data = std::string("a\xff"), .place = {}}}}, .place = {}};
+  const Value value{.data = Table{{"title", {.data = std::string("a\xff"), .location = {}}}}, .location = {}};
   EXPECT_THROW(write_toml(value), std::runtime_error);
 }
 

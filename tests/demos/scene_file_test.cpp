@@ -323,10 +323,10 @@ TEST(ScenePictures, EachSceneHasOneAndAllAreSmall) {
   const ScenePictures pictures;
   std::set<float> tops;
   for (const SceneListing& scene : list_scenes()) {
-    const auto place = pictures.place(scene.name);
-    ASSERT_TRUE(place) << scene.name << " has no picture: ci/figures makes it";
-    tops.insert((*place)[1]);
-    const auto row = static_cast<int>((*place)[1] * static_cast<float>(pictures.sheet().height));
+    const auto rectangle = pictures.rectangle(scene.name);
+    ASSERT_TRUE(rectangle) << scene.name << " has no picture: ci/figures makes it";
+    tops.insert((*rectangle)[1]);
+    const auto row = static_cast<int>((*rectangle)[1] * static_cast<float>(pictures.sheet().height));
     std::set<std::array<std::uint8_t, 3>> colours;
     for (int x = 0; x < ScenePictures::kWidth; ++x) {
       const std::uint8_t* const p = pictures.sheet().pixel(x, row + ScenePictures::kHeight / 2);
@@ -337,7 +337,7 @@ TEST(ScenePictures, EachSceneHasOneAndAllAreSmall) {
   EXPECT_EQ(tops.size(), list_scenes().size());
   EXPECT_EQ(pictures.sheet().height, ScenePictures::kHeight * static_cast<int>(list_scenes().size()))
       << "a picture of no scene";
-  EXPECT_FALSE(pictures.place("no such scene"));
+  EXPECT_FALSE(pictures.rectangle("no such scene"));
 }
 
 TEST(Scenes, AreListedWithDimensionAndTitleAndAllLoad) {
@@ -471,6 +471,8 @@ INSTANTIATE_TEST_SUITE_P(
         BadToml{"[world]\ngravity = inf\n", "bad.toml:2:1: gravity of world is inf; it must be a number"},
         BadToml{"[world]\nsubsteps = 1.5\n",
                 "bad.toml:2:1: substeps of world is 1.5; it must be a whole number"},
+        BadToml{"[world]\nsubsteps = 65\n",
+                "bad.toml:2:1: substeps of world is 65; it must be a whole number from 1 to 64"},
         BadToml{"world = 3\n", "bad.toml:1:1: world must be a table, and is a number"},
         BadToml{"box = 3\n", "bad.toml:1:1: box of a scene is 3; it must be an array"},
         BadToml{"[[box]]\nmass = 1\n", "bad.toml:1:1: box 1 needs the field 'size'"},

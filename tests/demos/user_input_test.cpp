@@ -350,12 +350,12 @@ TEST(UserInput, AKeyPinsWhatHandsHoldAndElseTakesAllPinsOff) {
   UserInput<2> input = input_2d();
   const Events2d all_off{{.action = Action::kUnpin, .body = kEveryBody}};
   EXPECT_EQ(frame_of(input, {press(SDLK_h)}), all_off);
-  EXPECT_FALSE(input.take_pinned());
+  EXPECT_FALSE(input.poll_pinned());
   const auto pin = frame_of(input, {mouse_button(SDL_MOUSEBUTTONDOWN, 400, 300), press(SDLK_h)});
   ASSERT_EQ(pin.size(), 2u);
   EXPECT_EQ(pin[1], (InputEvent<2>{.action = Action::kPin, .hand = kUsersHand}));
-  EXPECT_TRUE(input.take_pinned());
-  EXPECT_FALSE(input.take_pinned()) << "asking forgets it";
+  EXPECT_TRUE(input.poll_pinned());
+  EXPECT_FALSE(input.poll_pinned()) << "asking forgets it";
   EXPECT_EQ(frame_of(input, {mouse_button(SDL_MOUSEBUTTONUP, 400, 300), press(SDLK_h)})[1], all_off[0]);
 
   UserInput<3> solid = input_3d();

@@ -153,7 +153,7 @@ TEST_F(HostProgramTest, ItHasNoBuffers) {
 /// A local store where a host program's storage has it.
 class Store final : public LocalStorePort {
  public:
-  Store(AddressSpace& space, int spe) : bytes_(space.place_of_local_store(spe), kLocalStoreBytes) {
+  Store(AddressSpace& space, int spe) : bytes_(space.host_address_of_local_store(spe), kLocalStoreBytes) {
     mprotect(bytes_.data(), bytes_.size(), PROT_READ | PROT_WRITE);
   }
   std::span<std::byte> local_store() override { return bytes_; }

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""The pages are true as far as a program can tell: links lead somewhere, the sources that they and comments name exist, the walks of architecture.md are as the code is, its tables of
-rooms are as those of ci/check-layers.
+"""The pages are true as far as a program can tell: links lead somewhere, the sources that they and comments name exist, the walks of
+architecture.md are as the code is, its tables of rooms are as those of ci/check-layers, and each scene has its figures in ps3.md.
 
     check_pages.py [--links] ROOT
 
@@ -117,6 +117,15 @@ def wrong_rooms(root):
                    f"{sorted(layers_say.get(room, []))} in ci/check-layers")
 
 
+def missing_scenes(root):
+    """Scenes without a row in the table of ci/ps3-figures, and rows of no scene."""
+    page = root / "docs/notes/ps3.md"
+    rows = set(re.findall(r"^\| `(\w+)` \|", page.read_text(), re.M))
+    scenes = {file.stem for file in (root / "demos/scenes").iterdir() if file.suffix in (".toml", ".lua")}
+    wrong = [f"docs/notes/ps3.md: has no row of the scene {scene}; `ci/ps3-figures {scene}` prints it" for scene in scenes - rows]
+    return sorted(wrong + [f"docs/notes/ps3.md: there is no scene {row}" for row in rows - scenes])
+
+
 def main():
     root = pathlib.Path(sys.argv[-1]).resolve()
     wrong = [sentence for page in pages(root) for sentence in broken_links(page)]
@@ -126,6 +135,7 @@ def main():
         wrong += missing_sources_of_comments(root)
         wrong += wrong_walks(root)
         wrong += wrong_rooms(root)
+        wrong += missing_scenes(root)
     print("\n".join(wrong))
     return 1 if wrong else 0
 

@@ -46,14 +46,15 @@ def check_c_library(root):
 
 
 def check_both_sides(root):
-    """libsync.h has the same functions, the same names with an underscore, and a header for each function, on both sides."""
+    """libsync.h has the same functions on both sides, and each has a name with an underscore and a header of its own."""
     sides = [(root / folder / "libsync.h").read_text() for folder in ("spu_kernels/sdk/library/include", "ppu/libspe2/include")]
     calls = [set(re.findall(r"^(?:SOFTCELL_SYNC_INLINE )?(?:void|int) ((?!softcell_)\w+)\(", side, flags=re.M)) for side in sides]
-    names = [set(re.findall(r"^#define _(\w+) \1$", side, flags=re.M)) for side in sides]
+    shared = (root / "spu_kernels/sdk/shared/softcell_sync.h").read_text()
+    names = set(re.findall(r"^#define _(\w+) \1$", shared, flags=re.M))
     wrong = [f"{each}: is in libsync.h of one side only" for each in calls[0] ^ calls[1]]
-    wrong += [f"{each}: libsync.h does not have _{each} on both sides" for each in calls[0] - (names[0] & names[1])]
-    for folder in ("spu_kernels/sdk/library/include", "ppu/libspe2/inlined"):
-        wrong += [f"{each}: {folder} has no {each}.h" for each in calls[0] if not (root / folder / f"{each}.h").exists()]
+    wrong += [f"{each}: softcell_sync.h does not define _{each}" for each in calls[0] - names]
+    folder = "spu_kernels/sdk/library/include"
+    wrong += [f"{each}: {folder} has no {each}.h" for each in calls[0] if not (root / folder / f"{each}.h").exists()]
     called = set(re.findall(r"\w+", sources_of(root, ("tests/libspe2/ppu",))))
     wrong += [f"{each}: no test calls it on the PPU side" for each in calls[1] - called]
     if len(calls[0]) < 30:

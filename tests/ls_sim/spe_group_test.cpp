@@ -125,6 +125,18 @@ TEST_F(SpeGroupTest, RunsAnImageWithItsArgumentsAndGivesItsStatus) {
   EXPECT_EQ(group.statistics(0).jobs, 0u);
 }
 
+TEST_F(SpeGroupTest, EachRunBeginsWithLinkedDataAndZeroBss) {
+  const KernelImage image = test_image("remembers");
+  dma::Buffer<std::uint32_t> counts(memory_, "counts", 32);
+  SpeGroup group(memory_, {.spes = 1});
+  for (int run = 0; run < 3; ++run) {
+    group.start(0, image, {.argp = counts.ea().value});
+    ASSERT_FALSE(group.wait(0).fault);
+    EXPECT_EQ(counts[0], 101u);
+    EXPECT_EQ(counts[1], 1u);
+  }
+}
+
 TEST_F(SpeGroupTest, APointerAsANumberIsALocalStoreAddressToDmaCommands) {
   const KernelImage image = test_image("lists_by_number");
   dma::Buffer<std::array<std::uint32_t, 32>> line(memory_, "line", 1);

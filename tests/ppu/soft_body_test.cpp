@@ -298,11 +298,13 @@ TEST(SoftBody, ASavedStateIsSetInAnotherBody) {
     return "accepted";
   };
   EXPECT_EQ(refusal_of(positions, std::span(velocities).first(1)),
-            "a soft body of 27 particles was given 27 positions and 1 velocity");
+            "a soft body of 27 particles was given 1 velocity");
+  EXPECT_EQ(refusal_of(std::span(positions).first(26), velocities),
+            "a soft body of 27 particles was given 26 positions");
   std::vector<Vector3f> bad = velocities;
   bad[26].y() = NAN;
   EXPECT_EQ(refusal_of(positions, bad),
-            "a soft body was given a state whose particle 26 of 27 is not finite");
+            "a soft body of 27 particles was given a velocity that is not finite, for particle 26");
   EXPECT_EQ(state_hash(other), state_hash(body)) << "nothing has changed";
 }
 

@@ -73,6 +73,7 @@ TEST_P(Frames2d, AShapeThatWasRemovedIsNoneAndItsPlaceIsFilledAgain) {
   EXPECT_THROW(renderer_.remove_shape({99}), std::invalid_argument);
   const Shape2dId next = renderer_.add_shape(std::array<Triangle, 2>{{{0, 1, 2}, {0, 2, 3}}});
   EXPECT_EQ(next.value, square_id_.value);
+  EXPECT_THROW(draw(frame), std::invalid_argument) << "the old handle does not name the new shape";
   const std::array<Shape2d, 2> shapes{{{.shape = next, .vertices = square_, .colour = kRed},
                                        {.shape = other, .vertices = square_, .colour = kRed}}};
   frame.shapes = shapes;

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -382,9 +384,9 @@ TEST_F(RendererTest, ATextureLiesOnItsMeshTheRightWayUp) {
   EXPECT_LT(pixel_at(image, 0.1f, 0.1f)[1], 100);
 
   // Without it the mesh is drawn as before; its colour is multiplied with the texture's.
-  item.texture.reset();
+  const std::optional<TextureId> texture = std::exchange(item.texture, std::nullopt);
   EXPECT_GT(pixel_at(draw(frame), 0.8f, 0.1f)[0], 180);
-  item.texture = TextureId{0};
+  item.texture = texture;
   item.colour = {0, 1, 0};
   EXPECT_LT(pixel_at(draw(frame), 0.1f, 0.1f)[0], 130);
 }
@@ -403,8 +405,17 @@ TEST_F(RendererTest, RefusesTexturesThatDoNotFit) {
   EXPECT_THROW(renderer_.render(frame), std::invalid_argument);  // no coordinates
 }
 
-/// A game adds and removes them with each level.
-TEST_F(RendererTest, TexturesAndStaticMeshesAreRemovedAndTheirHandlesGivenAgain) {
+void expect_refusal(const std::function<void()>& call, const char* sentence) {
+  try {
+    call();
+    ADD_FAILURE() << "accepted; expected: " << sentence;
+  } catch (const std::invalid_argument& error) {
+    EXPECT_STREQ(error.what(), sentence);
+  }
+}
+
+/// A game adds and removes textures and meshes with each level.
+TEST_F(RendererTest, HandlesOfWhatWasRemovedAreRefusedAlsoWhenTheirSlotsAreFilledAgain) {
   SkinnedDraw item = add(ground_triangle());
   const std::vector<Eigen::Vector2f> coordinates{{0, 0}, {0, 1}, {1, 0}};
   renderer_.set_texture_coordinates(item.mesh, coordinates);
@@ -419,11 +430,27 @@ TEST_F(RendererTest, TexturesAndStaticMeshesAreRemovedAndTheirHandlesGivenAgain)
   Image white(8, 8);
   std::ranges::fill(white.rgba, std::uint8_t{255});
   const TextureId next = renderer_.add_texture(white);
-  EXPECT_EQ(next.value, item.texture->value);
+  EXPECT_EQ(next.value, item.texture->value) << "the renderer does not grow";
+  expect_refusal([&] { renderer_.render(frame); }, "the texture 0 was removed");
+  expect_refusal([&] { renderer_.remove_texture(*item.texture); }, "the texture 0 was removed");
+  item.texture = next;
   EXPECT_NE(draw(frame), first) << "it shows the new picture";
   item.texture = renderer_.add_texture(three_colours());
   EXPECT_NE(item.texture->value, next.value);
   EXPECT_EQ(draw(frame), first);
+
+  const MeshId removed = item.mesh;
+  renderer_.remove_mesh(removed);
+  item.mesh = add(ground_triangle()).mesh;
+  EXPECT_EQ(item.mesh.value, removed.value);
+  renderer_.set_texture_coordinates(item.mesh, coordinates);
+  EXPECT_EQ(draw(frame), first);
+  expect_refusal([&] { renderer_.set_texture_coordinates(removed, coordinates); }, "the mesh 0 was removed");
+  expect_refusal([&] { renderer_.remove_mesh(removed); }, "the mesh 0 was removed");
+  item.mesh = removed;
+  expect_refusal([&] { renderer_.render(frame); }, "the mesh 0 was removed");
+  item.mesh = {};
+  expect_refusal([&] { renderer_.render(frame); }, "no mesh 0");
 
   StaticDraw box{.mesh = test::add_unit_box(renderer_)};
   frame.skinned = {};
@@ -432,7 +459,10 @@ TEST_F(RendererTest, TexturesAndStaticMeshesAreRemovedAndTheirHandlesGivenAgain)
   renderer_.remove_static_mesh(box.mesh);
   EXPECT_THROW(renderer_.render(frame), std::invalid_argument);
   EXPECT_THROW(renderer_.remove_static_mesh(box.mesh), std::invalid_argument);
-  EXPECT_EQ(test::add_unit_box(renderer_).value, box.mesh.value);
+  const StaticMeshId other_box = test::add_unit_box(renderer_);
+  EXPECT_EQ(other_box.value, box.mesh.value);
+  expect_refusal([&] { renderer_.render(frame); }, "the static mesh 0 was removed");
+  box.mesh = other_box;
   EXPECT_EQ(draw(frame), with_box);
 }
 

@@ -149,18 +149,16 @@ TEST(Skin, CutsLargeLatticesIntoJobsOfTwoWindows) {
   rig.expect_oracle(2 * kUlpAtTwo, 0.02);
 }
 
-TEST(Skin, GivesTheSameBytesUnderEveryScheduleAndOnAFreshLocalStore) {
+TEST(Skin, GivesTheSameBytesUnderEveryScheduleOnAFreshLocalStoreAndOnAUsedOne) {
   std::vector<spu::SkinnedVertex> expected;
   for (const char* schedule : {"eager", "lazy", "random:1", "random:2", "random:3"}) {
-    for (const bool reload : {false, true}) {
-      SkinRig rig(ppu::make_sphere(0.7f, 24), 0.2f,
-                  {.spes = 2, .schedule = dma::parse_schedule(schedule), .reload_always = reload});
-      rig.skin();
+    SkinRig rig(ppu::make_sphere(0.7f, 24), 0.2f, {.spes = 1, .schedule = dma::parse_schedule(schedule)});
+    for (const char* local_store : {"fresh", "used"}) {
       const auto body = rig.skin();
       if (expected.empty()) expected.assign(body.vertices.begin(), body.vertices.end());
       ASSERT_EQ(expected.size(), body.vertices.size());
       EXPECT_EQ(std::memcmp(expected.data(), body.vertices.data(), body.vertices.size_bytes()), 0)
-          << schedule << " " << reload;
+          << schedule << ", on a " << local_store << " local store";
     }
   }
 }

@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 
+#include "scene/frame_time.h"
 #include "softcell/base/assert.h"
 #include "softcell/render/overlay.h"
 
@@ -122,8 +123,8 @@ bool Panel::draw_scene(const SceneTitle& scene, bool is_current, float scale) co
   if (!ImGui::IsItemVisible()) return chosen;
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const ImVec2 end{at.x + picture.x, at.y + picture.y};
-  if (const auto place = pictures_.place(scene.name)) {
-    const auto& [left, top, right, bottom] = *place;
+  if (const auto rectangle = pictures_.rectangle(scene.name)) {
+    const auto& [left, top, right, bottom] = *rectangle;
     list.AddImage(render::Overlay::sheet(), at, end, {left, top}, {right, bottom});
   } else {
     list.AddRectFilled(at, end, IM_COL32(40, 48, 58, 255));
@@ -154,10 +155,7 @@ void Panel::draw_time(const Demo& demo, WindowInput& input) {
   int substeps = settings.substeps;
   if (slider("time scale", time_scale, 0.05f, 2, "%.2f", true))
     input.change(Action::kTimeScale, 0, time_scale);
-  // A scene may have more of them than most need: the way back to these stays open.
-  const auto most = static_cast<int>(number_of(Action::kSubsteps)->high);
-  most_substeps_ = std::clamp(substeps, most_substeps_, most);
-  if (ImGui::SliderInt("substeps", &substeps, 1, most_substeps_, "%d", ImGuiSliderFlags_AlwaysClamp))
+  if (ImGui::SliderInt("substeps", &substeps, 1, kMaxSubsteps, "%d", ImGuiSliderFlags_AlwaysClamp))
     input.change(Action::kSubsteps, 0, static_cast<float>(substeps));
   edits_ = edits_ || ImGui::IsItemActive();
   if (slider("gravity", gravity, 0, 30, "%.1f m/s\xC2\xB2")) input.set_strength_of_gravity(gravity);

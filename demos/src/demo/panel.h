@@ -43,13 +43,13 @@ class Panel {
   bool edits() const { return edits_; }
 
   /// The number of the scene that the user has chosen. Reading it clears the choice.
-  std::optional<std::size_t> take_choice() { return std::exchange(choice_, std::nullopt); }
+  std::optional<std::size_t> poll_choice() { return std::exchange(choice_, std::nullopt); }
 
   /// The scene file that the user has chosen. Reading it clears the choice.
-  std::optional<std::filesystem::path> take_file() { return std::exchange(file_, std::nullopt); }
+  std::optional<std::filesystem::path> poll_file() { return std::exchange(file_, std::nullopt); }
 
   /// The change of the scene that the user has asked for, without its point of the window. Reading it clears the request.
-  std::optional<SceneChange> take_change() { return std::exchange(change_, std::nullopt); }
+  std::optional<SceneChange> poll_change() { return std::exchange(change_, std::nullopt); }
 
  private:
   static constexpr std::size_t kFrames = 180;  // of the graph
@@ -81,7 +81,6 @@ class Panel {
   std::array<float, 4> area_{};  // left, top, right, bottom
   int body_ = -1;                // the body whose material is shown; -1: all bodies
   int stiffness_by_ = 0;         // alpha, frequency, modulus
-  int most_substeps_ = 10;       // of the slider
   std::array<std::array<float, kParts>, kFrames> milliseconds_{};
   std::size_t next_ = 0;
   std::vector<double> spe_ms_;

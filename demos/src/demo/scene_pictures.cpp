@@ -25,7 +25,7 @@ ScenePictures::ScenePictures() {
   }
 }
 
-std::optional<std::array<float, 4>> ScenePictures::place(std::string_view scene) const {
+std::optional<std::array<float, 4>> ScenePictures::rectangle(std::string_view scene) const {
   const auto found = row_.find(scene);
   if (found == row_.end()) return std::nullopt;
   const float share = 1 / static_cast<float>(row_.size()), top = share * static_cast<float>(found->second);

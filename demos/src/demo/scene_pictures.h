@@ -22,8 +22,8 @@ class ScenePictures {
 
   const render::Image& sheet() const { return sheet_; }
 
-  /// The place of a scene's picture in the sheet: left, top, right, bottom, each 0..1. None: the scene has no picture.
-  std::optional<std::array<float, 4>> place(std::string_view scene) const;
+  /// The rectangle of a scene's picture in the sheet: left, top, right, bottom, each 0..1. None: the scene has no picture.
+  std::optional<std::array<float, 4>> rectangle(std::string_view scene) const;
 
  private:
   render::Image sheet_;

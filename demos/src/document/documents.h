@@ -14,7 +14,7 @@ namespace softcell::demos {
 Value parse_toml(std::string_view text, const std::shared_ptr<const std::string>& file);
 
 /// Runs the chunk in a child process with limits on time and memory (lua_sandbox.h), and reads the plain data
-/// that it returns. Every value's place is the line at which the chunk ended.
+/// that it returns. Every value's location is the line at which the chunk ended.
 ///
 /// It forks: call it before threads are started. The child has only the calling thread, and locks that other threads hold stay locked in
 /// it.

@@ -56,7 +56,7 @@ std::string list(std::span<const std::string_view> names) {
 }
 
 [[noreturn]] void refuse_value(const Value& value, const std::string& name, const std::string& expected) {
-  throw SceneError(value.place, fmt::format("{} is {}; it must be {}", name, shown(value), expected));
+  throw SceneError(value.location, fmt::format("{} is {}; it must be {}", name, shown(value), expected));
 }
 
 }  // namespace
@@ -78,7 +78,7 @@ int read_integer(const Value& value, const std::string& name, int low, int high)
 
 const Table& as_table(const Value& value, std::string_view what) {
   if (const auto* table = std::get_if<Table>(&value.data)) return *table;
-  throw SceneError(value.place, fmt::format("{} must be a table, and is {}", what, kind_of(value)));
+  throw SceneError(value.location, fmt::format("{} must be a table, and is {}", what, kind_of(value)));
 }
 
 FieldReader::FieldReader(const Value& table, std::string what) : table_(table), what_(std::move(what)) {
@@ -101,9 +101,9 @@ const Value* FieldReader::field(std::string_view key, Need need) {
   return value;
 }
 
-const Place& FieldReader::place(std::string_view key) const {
+const Location& FieldReader::location(std::string_view key) const {
   const Value* value = find(key);
-  return value != nullptr ? value->place : table_.place;
+  return value != nullptr ? value->location : table_.location;
 }
 
 void FieldReader::refuse(std::string_view key, const Value& value, const std::string& expected) const {
@@ -208,8 +208,8 @@ std::span<const Value> FieldReader::items(std::string_view key, std::size_t at_m
   if (const auto* table = std::get_if<Table>(&value->data); table != nullptr && table->empty()) return {};
   if (array == nullptr) refuse(key, *value, "an array");
   if (array->size() > at_most) {
-    throw SceneError(value->place, fmt::format("{} has {} {}; {} are the most that a scene may have", what_,
-                                               array->size(), key, at_most));
+    throw SceneError(value->location, fmt::format("{} has {} {}; {} are the most that a scene may have",
+                                                  what_, array->size(), key, at_most));
   }
   return *array;
 }
@@ -218,13 +218,13 @@ void FieldReader::finish() const {
   for (const auto& [name, value] : std::get<Table>(table_.data)) {
     if (std::find(known_.begin(), known_.end(), name) != known_.end()) continue;
     const std::string_view meant = base::nearest_name(name, known_);
-    throw SceneError(value.place, meant.empty() ? fmt::format("{} has no field '{}'; it has {}", what_,
-                                                              name.substr(0, 64), list(known_))
-                                                : fmt::format("{} has no field '{}'; did you mean '{}'?",
-                                                              what_, name, meant));
+    throw SceneError(value.location, meant.empty() ? fmt::format("{} has no field '{}'; it has {}", what_,
+                                                                 name.substr(0, 64), list(known_))
+                                                   : fmt::format("{} has no field '{}'; did you mean '{}'?",
+                                                                 what_, name, meant));
   }
   if (!missing_.empty())
-    throw SceneError(table_.place, fmt::format("{} needs the field '{}'", what_, missing_));
+    throw SceneError(table_.location, fmt::format("{} needs the field '{}'", what_, missing_));
 }
 
 }  // namespace softcell::demos

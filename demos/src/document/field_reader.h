@@ -71,12 +71,12 @@ class FieldReader {
   /// @throws SceneError  the table has a field that was never asked for, or lacks a required one.
   void finish() const;
 
-  const Place& place() const { return table_.place; }
-  /// The place of a field, or of the table when it is absent.
-  const Place& place(std::string_view key) const;
+  const Location& location() const { return table_.location; }
+  /// The location of a field, or of the table when it is absent.
+  const Location& location(std::string_view key) const;
   const std::string& what() const { return what_; }
-  /// Place and name of the table, for messages of those who use what was read: "arena.toml:12:1: soft body 3".
-  std::string described() const { return to_string(place()) + ": " + what_; }
+  /// Location and name of the table, for messages of those who use what was read: "arena.toml:12:1: soft body 3".
+  std::string described() const { return to_string(location()) + ": " + what_; }
   bool has(std::string_view key) const { return find(key) != nullptr; }
 
  private:

@@ -23,9 +23,9 @@ namespace {
 /// A running child and the end of the pipe through which it answers.
 class Child {
  public:
-  Child(std::string_view chunk, const Place& place) {
+  Child(std::string_view chunk, const Location& location) {
     std::array<int, 2> ends{};
-    if (pipe(ends.data()) != 0) refuse(place);
+    if (pipe(ends.data()) != 0) refuse(location);
     process_ = fork();
     if (process_ == 0) {
       close_range(0, static_cast<unsigned>(ends[1]) - 1, 0);
@@ -36,7 +36,7 @@ class Child {
     answer_ = ends[0];
     if (process_ < 0) {
       close(answer_);
-      refuse(place);
+      refuse(location);
     }
   }
   ~Child() {
@@ -69,8 +69,9 @@ class Child {
   }
 
  private:
-  [[noreturn]] static void refuse(const Place& place) {
-    throw SceneError(place, fmt::format("cannot start a process for the script: {}", std::strerror(errno)));
+  [[noreturn]] static void refuse(const Location& location) {
+    throw SceneError(location,
+                     fmt::format("cannot start a process for the script: {}", std::strerror(errno)));
   }
 
   pid_t process_ = -1;
@@ -80,10 +81,10 @@ class Child {
 }  // namespace
 
 Value run_lua(std::string_view chunk, const std::shared_ptr<const std::string>& file) {
-  const Place place{file, 1, 0};
-  const std::string message = Child(chunk, place).answer();
+  const Location location{file, 1, 0};
+  const std::string message = Child(chunk, location).answer();
   if (auto value = read_message(message, file)) return std::move(*value);
-  throw SceneError(place,
+  throw SceneError(location,
                    fmt::format("the script was stopped: it needs more than {} second, or more memory than "
                                "it may have",
                                kLuaSeconds));

@@ -12,7 +12,7 @@
 namespace softcell::demos {
 namespace {
 
-/// The place of a value in the result, as a chain on the stack, because most places are never written out.
+/// The location of a value in the result, as a chain on the stack, because most locations are never written out.
 struct Path {
   const Path* outer = nullptr;
   std::string_view name;    // in a table

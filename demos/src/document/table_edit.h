@@ -34,7 +34,7 @@ inline void erase_fields(Table& table, std::initializer_list<std::string_view> n
 
 /// The table in the field; it is created if there is none.
 inline Table& table_in(Table& table, const std::string& name) {
-  if (find_field(table, name) == nullptr) set_field(table, name, {.data = Table{}, .place = {}});
+  if (find_field(table, name) == nullptr) set_field(table, name, {.data = Table{}, .location = {}});
   return std::get<Table>(find_field(table, name)->data);
 }
 
@@ -44,13 +44,13 @@ inline Array* items_in(Table& table, std::string_view name) {
   return value == nullptr ? nullptr : std::get_if<Array>(&value->data);
 }
 
-inline Value integer_value(std::int64_t number) { return {.data = number, .place = {}}; }
-inline Value text_value(std::string_view text) { return {.data = std::string(text), .place = {}}; }
+inline Value integer_value(std::int64_t number) { return {.data = number, .location = {}}; }
+inline Value text_value(std::string_view text) { return {.data = std::string(text), .location = {}}; }
 template <class Vector>
 Value vector_value(const Vector& vector) {
   Array numbers;
   for (int i = 0; i < vector.size(); ++i) numbers.push_back(number_value(vector[i]));
-  return {.data = std::move(numbers), .place = {}};
+  return {.data = std::move(numbers), .location = {}};
 }
 
 }  // namespace softcell::demos

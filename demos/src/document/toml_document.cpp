@@ -70,12 +70,12 @@ void refuse_deep_nesting(std::string_view text, const std::shared_ptr<const std:
   }
 }
 
-Place place_of(const toml::source_region& region, const std::shared_ptr<const std::string>& file) {
+Location location_of(const toml::source_region& region, const std::shared_ptr<const std::string>& file) {
   return {file, static_cast<int>(region.begin.line), static_cast<int>(region.begin.column)};
 }
 
 Value convert(const toml::node& node, const std::shared_ptr<const std::string>& file) {
-  Value value{.data = false, .place = place_of(node.source(), file)};
+  Value value{.data = false, .location = location_of(node.source(), file)};
   if (const auto* flag = node.as_boolean()) {
     value.data = flag->get();
   } else if (const auto* integer = node.as_integer()) {
@@ -92,12 +92,12 @@ Value convert(const toml::node& node, const std::shared_ptr<const std::string>& 
     Table table;
     for (const auto& [key, entry] : *entries) {
       table.push_back({std::string(key.str()), convert(entry, file)});
-      // The place of a field is that of its name. A table in brackets already begins at its name.
-      if (key.source().begin.line > 0) table.back().value.place = place_of(key.source(), file);
+      // The location of a field is that of its name. A table in brackets already begins at its name.
+      if (key.source().begin.line > 0) table.back().value.location = location_of(key.source(), file);
     }
     value.data = std::move(table);
   } else {
-    throw SceneError(value.place, "a scene has no dates or times");
+    throw SceneError(value.location, "a scene has no dates or times");
   }
   return value;
 }
@@ -109,7 +109,7 @@ Value parse_toml(std::string_view text, const std::shared_ptr<const std::string>
   try {
     return convert(toml::parse(text), file);
   } catch (const toml::parse_error& error) {
-    throw SceneError(place_of(error.source(), file), std::string(error.description()));
+    throw SceneError(location_of(error.source(), file), std::string(error.description()));
   }
 }
 

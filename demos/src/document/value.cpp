@@ -7,10 +7,10 @@
 
 namespace softcell::demos {
 
-std::string to_string(const Place& place) {
-  std::string text = place.file ? *place.file : "scene";
-  if (place.line > 0) text += fmt::format(":{}", place.line);
-  if (place.line > 0 && place.column > 0) text += fmt::format(":{}", place.column);
+std::string to_string(const Location& location) {
+  std::string text = location.file ? *location.file : "scene";
+  if (location.line > 0) text += fmt::format(":{}", location.line);
+  if (location.line > 0 && location.column > 0) text += fmt::format(":{}", location.column);
   return text;
 }
 

@@ -32,7 +32,7 @@ class MessageWriter {
 
  private:
   template <class T>
-  void put(const T& value);
+  void append(const T& value);
   std::string bytes_;
 };
 

@@ -143,7 +143,7 @@ Value number_value(float number) {
   const std::string text = fmt::format("{}", number);
   double shortest = 0;
   std::from_chars(text.data(), text.data() + text.size(), shortest);
-  return {.data = shortest, .place = {}};
+  return {.data = shortest, .location = {}};
 }
 
 }  // namespace softcell::demos

@@ -34,15 +34,14 @@ void turn(const SDL_MouseMotionEvent& motion, Look& look) {
 
 }  // namespace
 
-CameraControl::CameraControl(const render::Camera& camera, int height) : camera_(camera), height_(height) {
+CameraControl::CameraControl(const render::Camera& camera, int height)
+    : camera_(camera), window_{.height = height} {
   SC_ASSERT(height > 0, "a picture {} pixels high", height);
 }
 
 bool CameraControl::handle(const SDL_Event& event, Look& look) {
+  if (window_.follow(event)) return false;
   switch (event.type) {
-    case SDL_WINDOWEVENT:
-      if (event.window.event == SDL_WINDOWEVENT_SIZE_CHANGED) height_ = std::max(event.window.data2, 1);
-      return false;
     case SDL_MOUSEBUTTONDOWN:
     case SDL_MOUSEBUTTONUP:
       if (event.button.button != SDL_BUTTON_RIGHT) return false;
@@ -71,7 +70,7 @@ void CameraControl::move(const SDL_MouseMotionEvent& motion, Look& look) const {
   const render::Camera before = moved_by(camera_, look);
   if (sideways) {
     const float metres =
-        2 * before.tan_half_fov_y * (before.eye - before.target).norm() / static_cast<float>(height_);
+        2 * before.tan_half_fov_y * (before.eye - before.target).norm() / static_cast<float>(window_.height);
     const Axes axes(before);
     look.moved +=
         metres * (static_cast<float>(motion.yrel) * axes.up - static_cast<float>(motion.xrel) * axes.right);

@@ -5,6 +5,7 @@
 
 #include "scene/look.h"
 #include "scene/scene_camera.h"
+#include "window_size.h"
 
 namespace softcell::demos {
 
@@ -28,7 +29,7 @@ class CameraControl {
   bool handle_key(const SDL_KeyboardEvent& key);
 
   render::Camera camera_;
-  int height_ = 720;
+  WindowSize window_{.height = 720};
   bool flies_ = false;  // the right button is down
   struct Keys {
     float right = 0, left = 0, up = 0, down = 0, forward = 0, back = 0;

@@ -111,7 +111,7 @@ void ControllerHands<Dimension>::move(Hand& hand, const Look& look,
   const Vector2i pixel = hand.at.cwiseProduct(size).template cast<int>();
   if (hand.trigger >= kTakes && !hand.is_closed) {
     hand.is_closed = true;  // so that it does not take what passes by later
-    hand.pointer.take(pixel.x(), pixel.y(), look, events);
+    hand.pointer.grab(pixel.x(), pixel.y(), look, events);
   } else if (hand.pointer.holds()) {
     hand.pointer.move_to(pixel.x(), pixel.y(), look, events);
     if constexpr (Dimension == 3) {

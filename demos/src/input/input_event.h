@@ -8,6 +8,8 @@
 #include <cstdint>
 #include <limits>
 
+#include "scene/frame_time.h"
+
 namespace softcell::demos {
 
 enum class Action : std::uint8_t {
@@ -49,7 +51,7 @@ struct NumberRange {
   bool whole = false;
 };
 inline constexpr std::array<NumberRange, 9> kNumbers{{{Action::kTimeScale, 0.02f, 4},
-                                                      {Action::kSubsteps, 1, 32, true},
+                                                      {Action::kSubsteps, 1, kMaxSubsteps, true},
                                                       {Action::kAlpha, 0, 1},
                                                       {Action::kFrequency, 0, 1000},
                                                       {Action::kModulus, 0, 1e9f},

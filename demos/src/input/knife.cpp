@@ -11,7 +11,7 @@ namespace softcell::demos {
 
 template <int Dimension>
 Knife<Dimension>::Knife(Blade blade, int width, int height)
-    : blade_(std::move(blade)), width_(width), height_(height) {
+    : blade_(std::move(blade)), window_{width, height} {
   SC_ASSERT(blade_ && width > 0 && height > 0, "a picture of {} by {} pixels, {} a blade", width, height,
             blade_ ? "with" : "without");
 }
@@ -19,11 +19,7 @@ Knife<Dimension>::Knife(Blade blade, int width, int height)
 template <int Dimension>
 bool Knife<Dimension>::handle(const SDL_Event& event, Look& look,
                               std::vector<InputEvent<Dimension>>& events) {
-  if (event.type == SDL_WINDOWEVENT && event.window.event == SDL_WINDOWEVENT_SIZE_CHANGED) {
-    width_ = std::max(event.window.data1, 1);  // a window may shrink to nothing
-    height_ = std::max(event.window.data2, 1);
-    return false;
-  }
+  if (window_.follow(event)) return false;
   if (!blade_) return false;
   if (!look.knife) {  // put away, perhaps in the middle of a stroke
     from_.reset();
@@ -56,8 +52,8 @@ bool Knife<Dimension>::handle(const SDL_Event& event, Look& look,
 template <int Dimension>
 void Knife<Dimension>::show(Look& look) const {
   const auto share = [this](const Point& at) {
-    return Eigen::Vector2f(static_cast<float>(at.x) / static_cast<float>(width_),
-                           static_cast<float>(at.y) / static_cast<float>(height_));
+    return Eigen::Vector2f(static_cast<float>(at.x) / static_cast<float>(window_.width),
+                           static_cast<float>(at.y) / static_cast<float>(window_.height));
   };
   look.stroke = std::array{share(*from_), share(to_)};
 }
@@ -65,7 +61,7 @@ void Knife<Dimension>::show(Look& look) const {
 template <int Dimension>
 void Knife<Dimension>::cut(const Look& look, std::vector<InputEvent<Dimension>>& events) const {
   if (std::max(std::abs(to_.x - from_->x), std::abs(to_.y - from_->y)) < kShortest) return;
-  InputEvent<Dimension> event = blade_(look, {*from_, to_, width_, height_});
+  InputEvent<Dimension> event = blade_(look, {*from_, to_, window_.width, window_.height});
   event.action = Action::kCut;
   event.body = kEveryBody;
   events.push_back(event);

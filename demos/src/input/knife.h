@@ -11,6 +11,7 @@
 #include "scene/look.h"
 #include "scene/scene_2d.h"
 #include "scene/scene_camera.h"
+#include "window_size.h"
 
 namespace softcell::demos {
 
@@ -45,7 +46,7 @@ class Knife {
   void cut(const Look& look, std::vector<InputEvent<Dimension>>& events) const;
 
   Blade blade_;
-  int width_ = 1, height_ = 1;
+  WindowSize window_;
   std::optional<Point> from_;  // none: nothing is being cut
   Point to_;
 };

@@ -1,21 +1,14 @@
 #include "mouse_hand.h"
 
-#include <algorithm>
-
 #include "softcell/base/assert.h"
 
 namespace softcell::demos {
 
 void MouseHand::handle(const SDL_Event& event, const Look& look, std::vector<InputEvent<2>>& events) {
+  if (window_.follow(event)) return;
   switch (event.type) {
-    case SDL_WINDOWEVENT:
-      if (event.window.event == SDL_WINDOWEVENT_SIZE_CHANGED) {
-        width_ = std::max(event.window.data1, 1);  // a window may shrink to nothing
-        height_ = std::max(event.window.data2, 1);
-      }
-      break;
     case SDL_MOUSEBUTTONDOWN:
-      if (event.button.button == SDL_BUTTON_LEFT) take(event.button.x, event.button.y, look, events);
+      if (event.button.button == SDL_BUTTON_LEFT) grab(event.button.x, event.button.y, look, events);
       break;
     case SDL_MOUSEMOTION:
       if (holds_) move_to(event.motion.x, event.motion.y, look, events);
@@ -35,8 +28,8 @@ MouseHand MouseHand::for_hand(std::uint32_t hand) const {
   return other;
 }
 
-bool MouseHand::take(int x, int y, const Look&, std::vector<InputEvent<2>>& events) {
-  auto taken = pick_(camera_.point_at(x, y, width_, height_));
+bool MouseHand::grab(int x, int y, const Look&, std::vector<InputEvent<2>>& events) {
+  auto taken = pick_(camera_.point_at(x, y, window_.width, window_.height));
   if (!taken) return false;
   taken->hand = hand_;
   events.push_back(*taken);
@@ -48,7 +41,7 @@ void MouseHand::move_to(int x, int y, const Look&, std::vector<InputEvent<2>>& e
   SC_ASSERT(holds_, "hand {} is moved to ({}, {}) but holds no body", hand_, x, y);
   if (events.empty() || events.back().action != Action::kMoveHand || events.back().hand != hand_)
     events.push_back({.action = Action::kMoveHand, .hand = hand_});
-  events.back().value = camera_.point_at(x, y, width_, height_);
+  events.back().value = camera_.point_at(x, y, window_.width, window_.height);
 }
 
 void MouseHand::let_go(std::vector<InputEvent<2>>& events) {

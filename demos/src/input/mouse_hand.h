@@ -13,6 +13,7 @@
 #include "scene/look.h"
 #include "scene/scene_2d.h"
 #include "softcell/base/assert.h"
+#include "window_size.h"
 
 namespace softcell::demos {
 
@@ -24,7 +25,7 @@ class MouseHand {
 
   /// @param width, height  of the window, in the units in which SDL gives the mouse
   MouseHand(const Camera2d& camera, Pick pick, int width, int height)
-      : camera_(camera), pick_(std::move(pick)), width_(width), height_(height) {
+      : camera_(camera), pick_(std::move(pick)), window_{width, height} {
     SC_ASSERT(pick_ && width > 0 && height > 0, "a picture of {} by {} pixels", width, height);
   }
 
@@ -35,10 +36,10 @@ class MouseHand {
 
   /// The same for another hand of the user, which holds nothing yet.
   MouseHand for_hand(std::uint32_t hand) const;
-  Eigen::Vector2i window_size() const { return {width_, height_}; }
+  Eigen::Vector2i window_size() const { return {window_.width, window_.height}; }
   bool holds() const { return holds_; }
-  /// @return whether there is something to take
-  bool take(int x, int y, const Look& look, std::vector<InputEvent<2>>& events);
+  /// @return whether there is something to grab
+  bool grab(int x, int y, const Look& look, std::vector<InputEvent<2>>& events);
   /// @pre holds()
   void move_to(int x, int y, const Look& look, std::vector<InputEvent<2>>& events);
   /// Pins what it holds where it is. @pre holds()
@@ -49,7 +50,7 @@ class MouseHand {
  private:
   Camera2d camera_;
   Pick pick_;
-  int width_, height_;
+  WindowSize window_;
   std::uint32_t hand_ = kUsersHand;
   bool holds_ = false;
 };

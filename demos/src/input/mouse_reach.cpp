@@ -14,21 +14,16 @@ constexpr float kFartherPerNotch = 1.05f;  // per notch of the wheel, turned awa
 }  // namespace
 
 MouseReach::MouseReach(Eye eye, Pick pick, int width, int height)
-    : eye_(std::move(eye)), pick_(std::move(pick)), width_(width), height_(height) {
+    : eye_(std::move(eye)), pick_(std::move(pick)), window_{width, height} {
   SC_ASSERT(eye_ && width > 0 && height > 0, "a picture of {} by {} pixels, {} an eye", width, height,
             eye_ ? "with" : "without");
 }
 
 bool MouseReach::handle(const SDL_Event& event, const Look& look, std::vector<InputEvent<3>>& events) {
+  if (window_.follow(event)) return false;
   switch (event.type) {
-    case SDL_WINDOWEVENT:
-      if (event.window.event == SDL_WINDOWEVENT_SIZE_CHANGED) {
-        width_ = std::max(event.window.data1, 1);  // a window may shrink to nothing
-        height_ = std::max(event.window.data2, 1);
-      }
-      return false;
     case SDL_MOUSEBUTTONDOWN:
-      return event.button.button == SDL_BUTTON_LEFT && take(event.button.x, event.button.y, look, events);
+      return event.button.button == SDL_BUTTON_LEFT && grab(event.button.x, event.button.y, look, events);
     case SDL_MOUSEMOTION:
       if (!depth_) return false;
       move_to(event.motion.x, event.motion.y, look, events);
@@ -53,10 +48,10 @@ MouseReach MouseReach::for_hand(std::uint32_t hand) const {
   return other;
 }
 
-bool MouseReach::take(int x, int y, const Look& look, std::vector<InputEvent<3>>& events) {
+bool MouseReach::grab(int x, int y, const Look& look, std::vector<InputEvent<3>>& events) {
   if (!pick_) return false;
   const render::Camera camera = eye_(look);
-  auto taken = pick_(ray_through(camera, x, y, width_, height_));
+  auto taken = pick_(ray_through(camera, x, y, window_.width, window_.height));
   if (!taken) return false;
   x_ = x;
   y_ = y;
@@ -92,7 +87,7 @@ void MouseReach::let_go(std::vector<InputEvent<3>>& events) {
 void MouseReach::move(const Look& look, std::vector<InputEvent<3>>& events) const {
   SC_ASSERT(depth_, "hand {} is moved to ({}, {}) but holds no body", hand_, x_, y_);
   const render::Camera camera = eye_(look);
-  const Ray ray = ray_through(camera, x_, y_, width_, height_);
+  const Ray ray = ray_through(camera, x_, y_, window_.width, window_.height);
   const Eigen::Vector3f forward = (camera.target - camera.eye).normalized();
   if (events.empty() || events.back().action != Action::kMoveHand || events.back().hand != hand_)
     events.push_back({.action = Action::kMoveHand, .hand = hand_});

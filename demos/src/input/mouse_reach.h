@@ -11,6 +11,7 @@
 #include "input_event.h"
 #include "scene/look.h"
 #include "scene/scene_camera.h"
+#include "window_size.h"
 
 namespace softcell::demos {
 
@@ -36,10 +37,10 @@ class MouseReach {
 
   /// The same for another hand of the user, which holds nothing yet.
   MouseReach for_hand(std::uint32_t hand) const;
-  Eigen::Vector2i window_size() const { return {width_, height_}; }
+  Eigen::Vector2i window_size() const { return {window_.width, window_.height}; }
   bool holds() const { return depth_.has_value(); }
-  /// @return whether there is something to take
-  bool take(int x, int y, const Look& look, std::vector<InputEvent<3>>& events);
+  /// @return whether there is something to grab
+  bool grab(int x, int y, const Look& look, std::vector<InputEvent<3>>& events);
   /// @pre holds()
   void move_to(int x, int y, const Look& look, std::vector<InputEvent<3>>& events);
   /// @param notches  of the wheel; below 0: nearer  @pre holds()
@@ -54,7 +55,7 @@ class MouseReach {
 
   Eye eye_;
   Pick pick_;
-  int width_ = 1, height_ = 1;
+  WindowSize window_;
   std::uint32_t hand_ = kUsersHand;
   int x_ = 0, y_ = 0;           // of the pointer while it holds something
   std::optional<float> depth_;  // of what it holds, along the camera's axis, metres; none: it holds nothing

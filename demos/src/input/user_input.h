@@ -45,11 +45,11 @@ class WindowInput {
   bool wants_to_quit() const { return quit_; }
   bool wants_next_scene() const { return next_scene_; }
   /// Whether the user has asked to save the scene. Reading it clears the request.
-  bool take_save() { return std::exchange(save_, false); }
+  bool poll_save() { return std::exchange(save_, false); }
   /// Whether the user has asked to remove the body that was held last. Reading it clears the request.
-  bool take_remove() { return std::exchange(remove_, false); }
+  bool poll_remove() { return std::exchange(remove_, false); }
   /// Whether hands have pinned what they hold. Reading it clears this.
-  bool take_pinned() { return std::exchange(pinned_, false); }
+  bool poll_pinned() { return std::exchange(pinned_, false); }
 
  protected:
   /// Handles a command that concerns the window. @return  whether it did.

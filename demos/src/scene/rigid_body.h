@@ -33,11 +33,11 @@ struct RigidPart {
   render::Colour colour{0.8f, 0.8f, 0.8f};
 
   /// The pose of the shape in the body's frame.
-  Eigen::Matrix4f place() const {
-    Eigen::Matrix4f place = Eigen::Matrix4f::Identity();
-    place.topLeftCorner<3, 3>() = shape.rotation.toRotationMatrix();
-    place.topRightCorner<3, 1>() = shape.position;
-    return place;
+  Eigen::Matrix4f pose() const {
+    Eigen::Matrix4f pose = Eigen::Matrix4f::Identity();
+    pose.topLeftCorner<3, 3>() = shape.rotation.toRotationMatrix();
+    pose.topRightCorner<3, 1>() = shape.position;
+    return pose;
   }
 };
 

@@ -76,7 +76,7 @@ void append_rigid(const Scene& scene, std::span<const Eigen::Matrix4f> poses, st
   for (std::size_t i = 0; i < scene.boxes.size(); ++i) add(0.5f * scene.boxes[i].size, poses[i]);
   for (std::size_t i = 0; i < scene.rigid_bodies.size(); ++i) {
     for (const RigidPart& part : scene.rigid_bodies[i].parts)
-      add(half_size(part.shape), poses[scene.boxes.size() + i] * part.place());
+      add(half_size(part.shape), poses[scene.boxes.size() + i] * part.pose());
   }
   for (const Obstacle& obstacle : scene.obstacles) {
     SolidBox& box = boxes.emplace_back(SolidBox{.bounds = ppu::bounds(obstacle.mesh)});

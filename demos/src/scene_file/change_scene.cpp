@@ -78,7 +78,7 @@ Table new_item(const SceneOf& scene, const std::string& name, const NewBody<Dime
               number_value(first.damping_time.value_or(first.damping)));
     set_field(item, "friction", number_value(first.friction));
     set_field(item, "restitution", number_value(first.restitution));
-    if (!first.self_contacts) set_field(item, "self_contacts", Value{.data = false, .place = {}});
+    if (!first.self_contacts) set_field(item, "self_contacts", Value{.data = false, .location = {}});
   }
   set_field(item, "position", vector_value(body.middle));
   return item;
@@ -89,17 +89,17 @@ template <class SceneOf>
 void add_item(SceneOf& scene, Table item, const std::vector<fs::path>& files) {
   if (scene.soft_bodies.size() == kMaxSoftBodies)
     throw std::runtime_error(fmt::format("a scene has at most {} soft bodies", kMaxSoftBodies));
-  const Value value{.data = std::move(item), .place = {}};
+  const Value value{.data = std::move(item), .location = {}};
   SceneOf changed = scene;
   try {
     read_another_body(value, SceneSource::of_user(files), changed);
   } catch (const SceneError& error) {
-    // The mistake is in no scene file, so the message has no place.
-    const std::string sentence = error.what(), place = to_string(value.place) + ": ";
-    throw std::runtime_error(sentence.starts_with(place) ? sentence.substr(place.size()) : sentence);
+    // The mistake is in no scene file, so the message has no location.
+    const std::string sentence = error.what(), location = to_string(value.location) + ": ";
+    throw std::runtime_error(sentence.starts_with(location) ? sentence.substr(location.size()) : sentence);
   }
   Table& root = root_of(own_document(changed));
-  if (items_in(root, "soft_body") == nullptr) set_field(root, "soft_body", {.data = Array{}, .place = {}});
+  if (items_in(root, "soft_body") == nullptr) set_field(root, "soft_body", {.data = Array{}, .location = {}});
   items_in(root, "soft_body")->push_back(value);
   changed.files.insert(changed.files.end(), files.begin(), files.end());
   scene = std::move(changed);
@@ -121,7 +121,7 @@ Value shape_value(std::string_view kind, std::initializer_list<std::pair<std::st
   Table shape;
   set_field(shape, "kind", text_value(kind));
   for (const auto& [name, value] : fields) set_field(shape, name, value);
-  return {.data = std::move(shape), .place = {}};
+  return {.data = std::move(shape), .location = {}};
 }
 
 constexpr std::array<std::string_view, 6> kShapes3d{"box", "sphere", "torus", "cylinder", "cone", "penguin"};

@@ -32,7 +32,7 @@ std::string not_read_of(const std::string& file, const ppu::ImportReport& report
   return fmt::format("{}: not read: {}", file, fmt::join(report.not_read, ", "));
 }
 
-const ppu::TriangleMesh& MeshFiles::mesh(const std::string& file, const Place& place) {
+const ppu::TriangleMesh& MeshFiles::mesh(const std::string& file, const Location& location) {
   const auto known = meshes_.find(file);
   if (known != meshes_.end()) return known->second;
   ppu::ImportReport report;
@@ -40,18 +40,18 @@ const ppu::TriangleMesh& MeshFiles::mesh(const std::string& file, const Place& p
   const base::EmbeddedFile* const embedded = source_.embedded_mesh(file);
   try {
     mesh = embedded != nullptr ? ppu::import_mesh(std::as_bytes(std::span(embedded->text)), file, &report)
-                               : ppu::import_mesh(source_.mesh(file, place), &report);
+                               : ppu::import_mesh(source_.mesh(file, location), &report);
   } catch (const SceneError&) {
     throw;
   } catch (const std::exception& error) {
-    throw SceneError(place, error.what());
+    throw SceneError(location, error.what());
   }
   source_.add_files(report.files);
   if (!report.not_read.empty()) notes_.push_back(not_read_of(file, report));
   pixels_ += pixels_of(mesh);
   if (pixels_ > kMaxPixels) {
     throw SceneError(
-        place,
+        location,
         fmt::format("the pictures of the scene's meshes have {} pixels or more; they may have at most {}",
                     pixels_, kMaxPixels));
   }

@@ -23,9 +23,9 @@ class MeshFiles {
   /// @param source  must outlive this object; it is told which files were read.
   explicit MeshFiles(const SceneSource& source) : source_(source) {}
 
-  /// The mesh in a file that the scene names at `place`. Bodies that name the same file share its pictures.
+  /// The mesh in a file that the scene names at `location`. Bodies that name the same file share its pictures.
   /// @throws SceneError  there is no such file, the scene may not name it, it is no mesh, or the scene has too many pixels.
-  const ppu::TriangleMesh& mesh(const std::string& file, const Place& place);
+  const ppu::TriangleMesh& mesh(const std::string& file, const Location& location);
 
   /// The parts of the meshes that were not read, one sentence for each file.
   const std::vector<std::string>& notes() const { return notes_; }

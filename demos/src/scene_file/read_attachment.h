@@ -19,7 +19,7 @@ inline void refuse_field_of_others(const FieldReader& fields, ppu::AttachmentKin
   const bool rope = kind == ppu::AttachmentKind::kRope, hinge = kind == ppu::AttachmentKind::kHinge;
   const auto refuse_unless = [&](bool allowed, const char* name, std::string_view owners) {
     if (allowed || !fields.has(name)) return;
-    throw SceneError(fields.place(name),
+    throw SceneError(fields.location(name),
                      fmt::format("{} is a {} and has the field '{}'; only {} have it", fields.what(),
                                  kAttachmentKinds.at(static_cast<std::size_t>(kind)), name, owners));
   };
@@ -65,21 +65,21 @@ void read_attachment(FieldReader& fields, const SceneOf& scene, AttachmentPlacem
   for (const char* const name : {"to", "box", "rigid"})
     if (fields.has(name)) given.emplace_back(name);
   if (given.size() > 1) {
-    throw SceneError(fields.place(),
+    throw SceneError(fields.location(),
                      fmt::format("{} has {}; give only one of to{} rigid", fields.what(),
                                  fmt::join(given, " and "), kDimension == 3 ? ", box and" : " and"));
   }
-  if (fields.has("to")) attachment.other = find_body(other, fields.place("to"), scene);
+  if (fields.has("to")) attachment.other = find_body(other, fields.location("to"), scene);
   if (attachment.other == attachment.body)
-    throw SceneError(fields.place("to"), fields.what() + " attaches '" + other + "' to itself");
+    throw SceneError(fields.location("to"), fields.what() + " attaches '" + other + "' to itself");
   try {
     ppu::validate(settings);
   } catch (const std::invalid_argument& error) {
-    throw SceneError(fields.place(), fields.what() + ": " + error.what());
+    throw SceneError(fields.location(), fields.what() + ": " + error.what());
   }
   if (settings.kind == ppu::AttachmentKind::kRope && !settings.point && !attachment.box &&
       !attachment.rigid && !attachment.other)
-    throw SceneError(fields.place(),
+    throw SceneError(fields.location(),
                      fields.what() + " is a rope to the world; it needs the point of its other end");
 }
 

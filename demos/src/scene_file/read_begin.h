@@ -39,21 +39,21 @@ std::shared_ptr<const Beginning<Dimension>> read_begin(const Value* value, const
   if constexpr (Dimension == 3) fields.vector<3>("tilt", tilt, kTilt).number("seconds", seconds, kSeconds);
   fields.finish();
   auto begin = std::make_shared<Beginning<Dimension>>();
-  const Place& place = fields.place("state");
-  const std::string text = source.state(file, place);
+  const Location& location = fields.location("state");
+  const std::string text = source.state(file, location);
   try {
     *begin = parse_state<Dimension>(text);
   } catch (const std::runtime_error& error) {
-    throw SceneError(place, fmt::format("{}: {}", file, error.what()));
+    throw SceneError(location, fmt::format("{}: {}", file, error.what()));
   }
   if (begin->soft_bodies.size() != scene.soft_bodies.size())
-    throw SceneError(place, fmt::format("{} has {} soft bodies, and the scene has {}", file,
-                                        begin->soft_bodies.size(), scene.soft_bodies.size()));
+    throw SceneError(location, fmt::format("{} has {} soft bodies, and the scene has {}", file,
+                                           begin->soft_bodies.size(), scene.soft_bodies.size()));
   for (std::size_t b = 0; b < particles.size(); ++b) {
     if (begin->soft_bodies[b].positions.size() != particles[b])
-      throw SceneError(place, fmt::format("{} has {} particles of soft body '{}', which has {}", file,
-                                          begin->soft_bodies[b].positions.size(), scene.soft_bodies[b].name,
-                                          particles[b]));
+      throw SceneError(location, fmt::format("{} has {} particles of soft body '{}', which has {}", file,
+                                             begin->soft_bodies[b].positions.size(),
+                                             scene.soft_bodies[b].name, particles[b]));
   }
   if (fields.has("gravity")) begin->gravity = gravity;
   if (fields.has("tilt")) begin->tilt = tilt;

@@ -28,7 +28,7 @@ void read_strengths(FieldReader& fields, std::vector<StrengthSlab<Dimension>>& s
         .number("factor", slab.strength, kStrength, Need::kRequired)
         .finish();
     if (slab.normal.norm() < 1e-4f)
-      throw SceneError(of_slab.place("normal"), "normal of " + of_slab.what() + " must not be 0");
+      throw SceneError(of_slab.location("normal"), "normal of " + of_slab.what() + " must not be 0");
   }
 }
 
@@ -42,20 +42,20 @@ inline void read_cut(FieldReader& fields, ppu::Cut& where) {
       .finish();
   const bool plane = fields.has("normal"), has_edge = fields.has("edge"), has_way = fields.has("way");
   if (!plane && !has_edge && !has_way)
-    throw SceneError(fields.place(),
+    throw SceneError(fields.location(),
                      fields.what() + " needs either the field 'normal' or the fields 'edge' and 'way'");
   if (plane && (has_edge || has_way))
-    throw SceneError(fields.place(has_edge ? "edge" : "way"),
+    throw SceneError(fields.location(has_edge ? "edge" : "way"),
                      fmt::format("{} has the field 'normal', so it may not have '{}'", fields.what(),
                                  has_edge ? "edge" : "way"));
   if (!plane && has_edge != has_way)
-    throw SceneError(fields.place(),
+    throw SceneError(fields.location(),
                      fmt::format("{} has the field '{}', so it needs '{}', too", fields.what(),
                                  has_edge ? "edge" : "way", has_edge ? "way" : "edge"));
   if (plane && normal.norm() < 1e-6f)
-    throw SceneError(fields.place("normal"), "normal of " + fields.what() + " must not be 0");
+    throw SceneError(fields.location("normal"), "normal of " + fields.what() + " must not be 0");
   if (!plane && edge.cross(way).norm() < 1e-6f)
-    throw SceneError(fields.place(), fields.what() + " has no area: its edge and way are along one line");
+    throw SceneError(fields.location(), fields.what() + " has no area: its edge and way are along one line");
   where = plane ? ppu::Cut::plane(point, normal) : ppu::Cut::stroke(point, edge, way);
 }
 inline void read_cut(FieldReader& fields, ppu::Cut2d& where) {
@@ -66,13 +66,14 @@ inline void read_cut(FieldReader& fields, ppu::Cut2d& where) {
       .finish();
   const bool line = fields.has("normal"), has_way = fields.has("way");
   if (!line && !has_way)
-    throw SceneError(fields.place(), fields.what() + " needs either the field 'normal' or the field 'way'");
+    throw SceneError(fields.location(),
+                     fields.what() + " needs either the field 'normal' or the field 'way'");
   if (line && has_way)
-    throw SceneError(fields.place("way"),
+    throw SceneError(fields.location("way"),
                      fields.what() + " has the field 'normal', so it may not have 'way'");
   const char* const direction = line ? "normal" : "way";
   if ((line ? normal : way).norm() < 1e-6f)
-    throw SceneError(fields.place(direction),
+    throw SceneError(fields.location(direction),
                      fmt::format("{} of {} must not be 0", direction, fields.what()));
   where = line ? ppu::Cut2d::line(point, normal) : ppu::Cut2d::stroke(point, way);
 }

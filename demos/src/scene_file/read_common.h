@@ -8,6 +8,7 @@
 #include <string>
 
 #include "document/field_reader.h"
+#include "scene/frame_time.h"
 #include "scene/scene.h"
 #include "scene/scripted_input.h"
 #include "softcell/base/assert.h"
@@ -19,20 +20,19 @@ inline constexpr std::size_t kMaxSoftBodies = 256, kMaxRigidBodies = 1000, kMaxE
                              kMaxPictures = 1000, kMaxAttachments = 1000;
 inline constexpr std::uint32_t kMaxParticlesOfScene = 300'000;
 /// Call it while the bodies of a scene are read. @throws SceneError  there are too many particles so far
-inline void check_particles(std::size_t particles, const Place& place) {
+inline void check_particles(std::size_t particles, const Location& location) {
   if (particles > kMaxParticlesOfScene)
-    throw SceneError(place, fmt::format("the scene has {} particles or more; it may have at most {}",
-                                        particles, kMaxParticlesOfScene));
+    throw SceneError(location, fmt::format("the scene has {} particles or more; it may have at most {}",
+                                           particles, kMaxParticlesOfScene));
 }
 /// Call it when a body is added to a scene. @throws SceneError  there would be too many particles
-inline void check_added_particles(std::size_t particles, const Place& place) {
+inline void check_added_particles(std::size_t particles, const Location& location) {
   if (particles > kMaxParticlesOfScene)
-    throw SceneError(place, fmt::format("the scene would have {} particles; it may have at most {}",
-                                        particles, kMaxParticlesOfScene));
+    throw SceneError(location, fmt::format("the scene would have {} particles; it may have at most {}",
+                                           particles, kMaxParticlesOfScene));
 }
 inline constexpr std::size_t kMaxVerticesOfScene = 2'000'000;
 inline constexpr int kMaxFrames = 1'000'000;
-inline constexpr int kMaxSubsteps = 64;
 inline constexpr double kMaxGravity = 1000;  // m/s^2
 inline constexpr double kMaxMass = 1e6;      // kg
 inline constexpr double kLeastMass = 1e-6;   // kg, if it moves: floats hold inverses of masses and inertias
@@ -94,7 +94,7 @@ inline void read_mass(FieldReader& fields, float& mass) {
   fields.number("mass", mass, kMass);
   if (mass > 0 && mass < static_cast<float>(kLeastMass)) {
     throw SceneError(
-        fields.place("mass"),
+        fields.location("mass"),
         fmt::format("mass of {} is {}; it must be 0, which does not move, or a number from {} to {}",
                     fields.what(), mass, kLeastMass, kMaxMass));
   }
@@ -117,7 +117,7 @@ void check_name(const FieldReader& fields, const SceneOf& scene) {
                                   [&](const auto& body) { return body.name == bodies.back().name; });
   const auto index = static_cast<std::size_t>(first - bodies.begin());
   if (index + 1 == bodies.size()) return;
-  throw SceneError(fields.place("name"),
+  throw SceneError(fields.location("name"),
                    fmt::format("{} and {} have the same name, '{}'; give one of them another",
                                item_name("soft body", index), item_name("soft body", bodies.size() - 1),
                                bodies.back().name));
@@ -125,11 +125,11 @@ void check_name(const FieldReader& fields, const SceneOf& scene) {
 
 /// The number of the soft body of that name. @throws SceneError  there is none.
 template <class SceneOf>
-std::size_t find_body(const std::string& name, const Place& place, const SceneOf& scene) {
+std::size_t find_body(const std::string& name, const Location& location, const SceneOf& scene) {
   const auto found = std::find_if(scene.soft_bodies.begin(), scene.soft_bodies.end(),
                                   [&](const auto& body) { return body.name == name; });
   if (found == scene.soft_bodies.end())
-    throw SceneError(place, fmt::format("there is no soft body '{}'", name));
+    throw SceneError(location, fmt::format("there is no soft body '{}'", name));
   return static_cast<std::size_t>(found - scene.soft_bodies.begin());
 }
 
@@ -138,7 +138,7 @@ template <class SceneOf>
 std::size_t read_body(FieldReader& event, const SceneOf& scene) {
   std::string name;
   event.text("body", name, Need::kRequired);
-  return event.has("body") ? find_body(name, event.place("body"), scene) : scene.soft_bodies.size();
+  return event.has("body") ? find_body(name, event.location("body"), scene) : scene.soft_bodies.size();
 }
 
 /// Reads the fields `begin` and `end` of an event that lasts. @throws SceneError  it ends before it begins.
@@ -148,8 +148,9 @@ void read_duration(FieldReader& fields, Event& event) {
       .number("end", event.end, kTime, Need::kRequired)
       .finish();
   if (event.end <= event.begin) {
-    throw SceneError(fields.place("end"), fmt::format("{} ends at {} s; it begins at {} s and must end later",
-                                                      fields.what(), event.end, event.begin));
+    throw SceneError(fields.location("end"),
+                     fmt::format("{} ends at {} s; it begins at {} s and must end later", fields.what(),
+                                 event.end, event.begin));
   }
 }
 

@@ -76,7 +76,7 @@ void ring(FieldReader& fields, SoftBody2dPlacement& body) {
   fields.integer("diameter", diameter, 3, kMaxCells).integer("hole", hole, 0, kMaxCells).finish();
   if (hole > diameter - 2) {
     throw SceneError(
-        fields.place("hole"),
+        fields.location("hole"),
         fmt::format("hole of {} is {}; it must be at least 2 less than diameter", fields.what(), hole));
   }
   ring_of(diameter, hole, body);
@@ -89,7 +89,8 @@ void read_shape(const Value& value, const std::string& owner, SoftBody2dPlacemen
   FieldReader fields(value, "the shape of " + owner);
   std::size_t kind = kLatticeKinds.size();
   fields.choice("kind", kind, kLatticeKinds, Need::kRequired);
-  if (kind == kLatticeKinds.size()) throw SceneError(value.place, fields.what() + " needs the field 'kind'");
+  if (kind == kLatticeKinds.size())
+    throw SceneError(value.location, fields.what() + " needs the field 'kind'");
   kLatticeMakers[kind](fields, body);
 }
 
@@ -99,15 +100,15 @@ Cells read_rows(std::span<const Value> items, const std::string& owner) {
   for (const Value& item : items) {
     const auto* text = std::get_if<std::string>(&item.data);
     if (text == nullptr || text->size() > kMaxCells) {
-      throw SceneError(item.place, fmt::format("row {} of {} must be a text of at most {} characters",
-                                               rows.size() + 1, owner, kMaxCells));
+      throw SceneError(item.location, fmt::format("row {} of {} must be a text of at most {} characters",
+                                                  rows.size() + 1, owner, kMaxCells));
     }
     rows.push_back(*text);
   }
   try {
     return ppu::cells_from_rows(rows);
   } catch (const std::runtime_error& error) {
-    throw SceneError(items.front().place, error.what());
+    throw SceneError(items.front().location, error.what());
   }
 }
 
@@ -117,7 +118,7 @@ Cells read_cells(std::span<const Value> items, const std::string& owner) {
     const std::string name = fmt::format("cell {} of {}", cells.size() + 1, owner);
     const auto* pair = std::get_if<Array>(&item.data);
     if (pair == nullptr || pair->size() != 2)
-      throw SceneError(item.place, name + " must be an array of 2 numbers");
+      throw SceneError(item.location, name + " must be an array of 2 numbers");
     cells.push_back({read_integer((*pair)[0], "x of " + name, -kMaxGridIndex, kMaxGridIndex),
                      read_integer((*pair)[1], "y of " + name, -kMaxGridIndex, kMaxGridIndex)});
   }
@@ -125,15 +126,15 @@ Cells read_cells(std::span<const Value> items, const std::string& owner) {
 }
 
 /// Reads what a lattice's Lua file returns: `cells` or `rows`.
-Cells read_lattice_file(const SourceText& file, const Place& place) {
+Cells read_lattice_file(const SourceText& file, const Location& location) {
   if (!file.is_lua())
-    throw SceneError(place, fmt::format("lattice '{}' must be a file that ends in .lua", *file.name));
+    throw SceneError(location, fmt::format("lattice '{}' must be a file that ends in .lua", *file.name));
   const Value value = run_lua(file.text, file.name);
   FieldReader fields(value, "a lattice");
   const auto cells = fields.items("cells", ppu::kMaxLatticeParticles<2>);
   const auto rows = fields.items("rows", static_cast<std::size_t>(kMaxCells));
   fields.finish();
-  if (cells.empty() == rows.empty()) throw SceneError(value.place, "a lattice needs either cells or rows");
+  if (cells.empty() == rows.empty()) throw SceneError(value.location, "a lattice needs either cells or rows");
   return rows.empty() ? read_cells(cells, "a lattice") : read_rows(rows, "a lattice");
 }
 
@@ -158,24 +159,25 @@ double childrens_seconds() {
 
 LatticeFiles::LatticeFiles(const SceneSource& source) : source_(source), begin_(childrens_seconds()) {}
 
-const Cells& LatticeFiles::cells(const std::string& file, const Place& place) {
+const Cells& LatticeFiles::cells(const std::string& file, const Location& location) {
   if (const auto found = known_.find(file); found != known_.end()) return found->second;
   if (childrens_seconds() - begin_ > kLuaSeconds)
-    throw SceneError(
-        place, fmt::format("the scripts of the scene's lattices ran for more than {} second", kLuaSeconds));
-  return known_.emplace(file, read_lattice_file(source_.text(file, place), place)).first->second;
+    throw SceneError(location, fmt::format("the scripts of the scene's lattices ran for more than {} second",
+                                           kLuaSeconds));
+  return known_.emplace(file, read_lattice_file(source_.text(file, location), location)).first->second;
 }
 
-std::shared_ptr<const render::Image> LatticeFiles::picture(const std::string& file, const Place& place) {
+std::shared_ptr<const render::Image> LatticeFiles::picture(const std::string& file,
+                                                           const Location& location) {
   if (const auto found = pictures_.find(file); found != pictures_.end()) return found->second;
   constexpr std::size_t kMaxPictureFiles = 32;
   if (pictures_.size() == kMaxPictureFiles)
-    throw SceneError(place, fmt::format("the scene names more than {} pictures", kMaxPictureFiles));
-  const std::filesystem::path path = source_.picture(file, place);
+    throw SceneError(location, fmt::format("the scene names more than {} pictures", kMaxPictureFiles));
+  const std::filesystem::path path = source_.picture(file, location);
   try {
     return pictures_.emplace(file, load_picture(path)).first->second;
   } catch (const std::runtime_error& error) {
-    throw SceneError(place, error.what());
+    throw SceneError(location, error.what());
   }
 }
 
@@ -189,14 +191,14 @@ void read_lattice_2d(FieldReader& fields, LatticeFiles& files, const OwnPictureP
   const int given = (rows.empty() ? 0 : 1) + (shape != nullptr ? 1 : 0) + (fields.has("lattice") ? 1 : 0) +
                     (fields.has("image") ? 1 : 0);
   if (given != 1)
-    throw SceneError(fields.place(), fields.what() + (given == 0 ? " needs one of" : " has several of") +
-                                         " rows, shape, lattice and image" +
-                                         (given == 0 ? "" : "; it may have one of them"));
+    throw SceneError(fields.location(), fields.what() + (given == 0 ? " needs one of" : " has several of") +
+                                            " rows, shape, lattice and image" +
+                                            (given == 0 ? "" : "; it may have one of them"));
   if (longest_side && !fields.has("image"))
-    throw SceneError(fields.place("longest_side"),
+    throw SceneError(fields.location("longest_side"),
                      fields.what() + " has longest_side, which only an image has");
   const auto from_picture = [&](std::shared_ptr<const render::Image> picture, float side, double cells,
-                                const Place& place) {
+                                const Location& location) {
     try {
       PictureCells made = cells_of_picture(std::move(picture), cells);
       body.cells = std::move(made.cells);
@@ -205,22 +207,22 @@ void read_lattice_2d(FieldReader& fields, LatticeFiles& files, const OwnPictureP
     } catch (const std::runtime_error& error) {
       if (own.picture != nullptr)
         throw std::runtime_error(fmt::format("{}: {}", own.picture->file.string(), error.what()));
-      throw SceneError(place, fmt::format("{}: {}", fields.what(), error.what()));
+      throw SceneError(location, fmt::format("{}: {}", fields.what(), error.what()));
     }
   };
   if (own.picture != nullptr) {
-    from_picture(own.picture->image, own.longest_side, own.picture->cells, fields.place());
+    from_picture(own.picture->image, own.longest_side, own.picture->cells, fields.location());
   } else if (fields.has("image")) {
-    const Place& place = fields.place("image");
+    const Location& location = fields.location("image");
     const float side = longest_side.value_or(2), stated = body.settings.cell_size;
-    from_picture(files.picture(image, place), side,
-                 stated > 0 ? cells_along(side, stated) : double{kCellsAlongPicture}, place);
+    from_picture(files.picture(image, location), side,
+                 stated > 0 ? cells_along(side, stated) : double{kCellsAlongPicture}, location);
   } else if (shape != nullptr) {
     read_shape(*shape, fields.what(), body);
   } else if (!rows.empty()) {
     body.cells = read_rows(rows, fields.what());
   } else {
-    body.cells = files.cells(file, fields.place("lattice"));
+    body.cells = files.cells(file, fields.location("lattice"));
   }
 }
 

@@ -21,9 +21,9 @@ class LatticeFiles {
   explicit LatticeFiles(const SceneSource& source);
 
   /// The result is valid as long as this object. @throws SceneError
-  const std::vector<Eigen::Vector2i>& cells(const std::string& file, const Place& place);
+  const std::vector<Eigen::Vector2i>& cells(const std::string& file, const Location& location);
   /// @throws SceneError
-  std::shared_ptr<const render::Image> picture(const std::string& file, const Place& place);
+  std::shared_ptr<const render::Image> picture(const std::string& file, const Location& location);
 
  private:
   const SceneSource& source_;

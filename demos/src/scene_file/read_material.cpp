@@ -37,7 +37,7 @@ bool one_of(const FieldReader& fields, std::initializer_list<std::string_view> n
   for (const std::string_view name : names) {
     if (!fields.has(name)) continue;
     if (!first.empty()) {
-      throw SceneError(fields.place(name),
+      throw SceneError(fields.location(name),
                        fmt::format("{} has both {} and {}; give one", fields.what(), first, name));
     }
     first = name;
@@ -116,7 +116,7 @@ Material Materials::read(FieldReader& body, Need cell_size) const {
       std::vector<std::string_view> known;
       for (const auto& [known_name, ignored] : by_name_) known.push_back(known_name);
       const std::string_view meant = base::nearest_name(name, known);
-      throw SceneError(body.place("material"),
+      throw SceneError(body.location("material"),
                        fmt::format("there is no material '{}'{}", name,
                                    meant.empty() ? "" : fmt::format("; did you mean '{}'?", meant)));
     }

@@ -41,7 +41,7 @@ ppu::TriangleMesh box(FieldReader& fields) {
   float step = 0.1f;
   fields.vector("size", size, kLength).number("step", step, kLength).finish();
   if (size.maxCoeff() > step * static_cast<float>(kMaxSquaresAlongEdge)) {
-    throw SceneError(fields.place("step"),
+    throw SceneError(fields.location("step"),
                      fmt::format("step of {} is {}: its faces would have more than {} squares along an edge",
                                  fields.what(), step, kMaxSquaresAlongEdge));
   }
@@ -119,7 +119,7 @@ ppu::TriangleMesh primitive(const Value& value, const std::string& owner) {
   FieldReader fields(value, "the shape of " + owner);
   std::size_t kind = kMeshKinds.size();
   fields.choice("kind", kind, kMeshKinds, Need::kRequired);
-  if (kind == kMeshKinds.size()) throw SceneError(value.place, fields.what() + " needs the field 'kind'");
+  if (kind == kMeshKinds.size()) throw SceneError(value.location, fields.what() + " needs the field 'kind'");
   return kMeshMakers[kind](fields);
 }
 
@@ -134,7 +134,7 @@ Eigen::Quaternionf read_rotation(FieldReader& body) {
   FieldReader fields(*value, "the rotation of " + body.what());
   fields.vector("axis", axis, kCoordinate).number("degrees", degrees, kTurn, Need::kRequired).finish();
   if (axis.norm() < 1e-4f)
-    throw SceneError(fields.place("axis"), "axis of " + fields.what() + " must not be 0");
+    throw SceneError(fields.location("axis"), "axis of " + fields.what() + " must not be 0");
   const double half = double{degrees} * ppu::kPi / 360;
   const Eigen::Vector3d turn = ppu::sine(half) * axis.cast<double>().normalized();
   return {static_cast<float>(ppu::cosine(half)), static_cast<float>(turn.x()), static_cast<float>(turn.y()),
@@ -152,33 +152,36 @@ ppu::TriangleMesh read_mesh(FieldReader& body, MeshFiles& files) {
       .number("longest_side", longest_side, kLength)
       .finish();
   if ((shape != nullptr) == body.has("mesh")) {
-    throw SceneError(body.place(),
+    throw SceneError(body.location(),
                      body.what() + (shape == nullptr ? " needs a shape or a mesh"
                                                      : " has a shape and a mesh; it may have one of them"));
   }
   for (const char* const field : {"up", "scale"}) {
     if (shape != nullptr && body.has(field))
-      throw SceneError(body.place(field), fmt::format("{} of {} is for a mesh from a file, not for a shape",
-                                                      field, body.what()));
+      throw SceneError(
+          body.location(field),
+          fmt::format("{} of {} is for a mesh from a file, not for a shape", field, body.what()));
   }
   if (scale && longest_side)
-    throw SceneError(body.place("scale"), body.what() + " has both scale and longest_side; give one of them");
-  const Place& place = body.place(shape != nullptr ? "shape" : "mesh");
+    throw SceneError(body.location("scale"),
+                     body.what() + " has both scale and longest_side; give one of them");
+  const Location& location = body.location(shape != nullptr ? "shape" : "mesh");
   ppu::TriangleMesh mesh;
   try {
-    mesh = shape != nullptr ? primitive(*shape, body.what()) : files.mesh(file, place);
+    mesh = shape != nullptr ? primitive(*shape, body.what()) : files.mesh(file, location);
   } catch (const SceneError&) {
     throw;
   } catch (const std::exception& error) {
-    throw SceneError(place, error.what());
+    throw SceneError(location, error.what());
   }
   if (up == 1) ppu::turn_z_up(mesh);
   if (scale) {
     ppu::scale(mesh, *scale);
     const ppu::Bounds<3> box = ppu::bounds(mesh);
     if (!((box.high - box.low).maxCoeff() <= static_cast<float>(kFar)))
-      throw SceneError(body.place("scale"), fmt::format("scale of {} is {}, which makes it larger than {} m",
-                                                        body.what(), *scale, kFar));
+      throw SceneError(
+          body.location("scale"),
+          fmt::format("scale of {} is {}, which makes it larger than {} m", body.what(), *scale, kFar));
   }
   if (longest_side) ppu::fit(mesh, *longest_side);
   return mesh;

@@ -22,7 +22,7 @@ RigidPart read_part(const Value& value, const std::string& what, const RigidPart
   FieldReader fields(value, what);
   std::size_t kind = kRigidShapes.size();
   fields.choice("kind", kind, kRigidShapes, Need::kRequired);
-  if (kind == kRigidShapes.size()) throw SceneError(value.place, what + " needs the field 'kind'");
+  if (kind == kRigidShapes.size()) throw SceneError(value.location, what + " needs the field 'kind'");
   ppu::RigidShape& shape = part.shape;
   shape.kind = static_cast<ppu::RigidShapeKind>(kind);
   if (shape.kind == ppu::RigidShapeKind::kCapsule) shape.radius = 0.25f;
@@ -38,7 +38,7 @@ RigidPart read_part(const Value& value, const std::string& what, const RigidPart
   }
   fields.finish();
   if (shape.kind == ppu::RigidShapeKind::kCapsule && !(shape.height > 2 * shape.radius)) {
-    throw SceneError(fields.place("height"),
+    throw SceneError(fields.location("height"),
                      fmt::format("height of {} is {}; it must be more than twice its radius, {}", what,
                                  shape.height, shape.radius));
   }
@@ -48,7 +48,7 @@ RigidPart read_part(const Value& value, const std::string& what, const RigidPart
 void read_axis(FieldReader& fields, Eigen::Vector3f& axis) {
   fields.vector<3>("axis", axis, kCoordinate);
   if (axis.norm() < 1e-4f)
-    throw SceneError(fields.place("axis"), "axis of " + fields.what() + " must not be 0");
+    throw SceneError(fields.location("axis"), "axis of " + fields.what() + " must not be 0");
   axis.normalize();
 }
 
@@ -73,7 +73,7 @@ Motion read_motion(const Value& value, const std::string& owner) {
     added.angle = static_cast<float>(double{degrees} * ppu::kPi / 180);
     const float before = i > 0 ? motion.stops[i - 1].time : 0;
     if (added.time < before || (i > 0 && added.time == before)) {
-      throw SceneError(stop.place("time"),
+      throw SceneError(stop.location("time"),
                        fmt::format("{} is at {} s; the one before is at {} s, and each must be later",
                                    stop.what(), added.time, before));
     }
@@ -100,7 +100,7 @@ void read_rigid_body(const Value& value, std::size_t index, Scene& scene) {
   const Value* const motion = fields.field("motion");
   fields.finish();
   if ((shape != nullptr) == !parts.empty())
-    throw SceneError(fields.place(), fields.what() + " needs either a shape or parts");
+    throw SceneError(fields.location(), fields.what() + " needs either a shape or parts");
   if (shape != nullptr)
     body.parts.push_back(read_part(*shape, "the shape of " + fields.what(), usual, false));
   for (std::size_t i = 0; i < parts.size(); ++i)
@@ -108,14 +108,14 @@ void read_rigid_body(const Value& value, std::size_t index, Scene& scene) {
         read_part(parts[i], fmt::format("part {} of {}", i + 1, fields.what()), usual, true));
   if (motion != nullptr) {
     if (body.mass > 0) {
-      throw SceneError(fields.place("motion"),
+      throw SceneError(fields.location("motion"),
                        fields.what() + " has both mass and motion; what the scene moves has no mass");
     }
     body.motion = read_motion(*motion, fields.what());
   }
   for (std::size_t i = 0; i < scene.rigid_bodies.size(); ++i) {
     if (scene.rigid_bodies[i].name == body.name)
-      throw SceneError(fields.place("name"),
+      throw SceneError(fields.location("name"),
                        fmt::format("{} and {} have the same name, '{}'; give one of them another",
                                    item_name("rigid body", i), item_name("rigid body", index), body.name));
   }
@@ -125,7 +125,7 @@ void read_rigid_body(const Value& value, std::size_t index, Scene& scene) {
 std::size_t read_side(FieldReader& fields, std::string_view key, const Scene& scene) {
   std::string name;
   fields.text(key, name, Need::kRequired);
-  return fields.has(key) ? find_rigid_body(name, fields.place(key), scene) : 0;
+  return fields.has(key) ? find_rigid_body(name, fields.location(key), scene) : 0;
 }
 
 }  // namespace
@@ -147,9 +147,9 @@ void read_joints(std::span<const Value> items, Scene& scene) {
         .number("torque", joint.torque, kTorque)
         .finish();
     if (joint.a == joint.b)
-      throw SceneError(fields.place("b"), fields.what() + " joins a rigid body to itself");
+      throw SceneError(fields.location("b"), fields.what() + " joins a rigid body to itself");
     if (scene.rigid_bodies[joint.a].mass == 0 && scene.rigid_bodies[joint.b].mass == 0)
-      throw SceneError(fields.place(), fields.what() + " joins two bodies without a mass; one needs one");
+      throw SceneError(fields.location(), fields.what() + " joins two bodies without a mass; one needs one");
     scene.joints.push_back(joint);
   }
 }

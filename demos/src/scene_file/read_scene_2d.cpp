@@ -68,7 +68,7 @@ RigidBody2d read_rigid_body(FieldReader& fields, const Scene2d& scene) {
       .colour("colour", body.colour);
   if (!body.name.empty() &&
       std::ranges::any_of(scene.rigid_bodies, [&](const auto& other) { return other.name == body.name; })) {
-    throw SceneError(fields.place("name"),
+    throw SceneError(fields.location("name"),
                      fmt::format("{} has the name of another rigid body, '{}'; give one of them another",
                                  fields.what(), body.name));
   }
@@ -82,7 +82,7 @@ std::vector<Vector2f> read_corners(FieldReader& fields) {
     const std::string name = fmt::format("corner {} of {}", corners.size() + 1, fields.what());
     const auto* pair = std::get_if<Array>(&item.data);
     if (pair == nullptr || pair->size() != 2)
-      throw SceneError(item.place, name + " must be an array of 2 numbers");
+      throw SceneError(item.location, name + " must be an array of 2 numbers");
     corners.push_back({read_number((*pair)[0], "x of " + name, kCoordinate),
                        read_number((*pair)[1], "y of " + name, kCoordinate)});
   }
@@ -160,7 +160,7 @@ void read_rigid_bodies(FieldReader& root, Scene2d& scene) {
     fields.finish();
     if (!is_convex(shape.corners)) {
       throw SceneError(
-          fields.place("corners"),
+          fields.location("corners"),
           fmt::format("{} must be convex and have 3 to 8 corners, counter-clockwise, each at least {} m, and "
                       "{} of its length, off the sides that it does not end",
                       fields.what(), kSmallest, kThinnest));
@@ -174,7 +174,8 @@ void read_rigid_bodies(FieldReader& root, Scene2d& scene) {
 Eigen::Vector2i read_cell(FieldReader& fields, std::string_view key) {
   const auto numbers = fields.items(key, 2);
   const std::string name = fmt::format("{} of {}", key, fields.what());
-  if (numbers.size() != 2) throw SceneError(fields.place(key), name + " must be an array of 2 whole numbers");
+  if (numbers.size() != 2)
+    throw SceneError(fields.location(key), name + " must be an array of 2 whole numbers");
   const auto number = [&](std::size_t i) {
     return read_integer(numbers[i], (i == 0 ? "x of " : "y of ") + name, -kMaxCellIndex, kMaxCellIndex);
   };
@@ -190,7 +191,7 @@ void read_cell_colours(FieldReader& body, SoftBody2dPlacement& placement) {
     cells.low = read_cell(fields, "low");
     cells.high = read_cell(fields, "high");
     if ((cells.high.array() < cells.low.array()).any())
-      throw SceneError(fields.place("high"), fields.what() + " ends before it begins: high is below low");
+      throw SceneError(fields.location("high"), fields.what() + " ends before it begins: high is below low");
     fields.colour("colour", cells.colour).finish();
   }
 }
@@ -215,7 +216,7 @@ void check_face(const FieldReader& fields, const SoftBody2dPlacement& body) {
     return from.minCoeff() >= 0 && from.maxCoeff() <= 1;
   });
   if (!on_cell)
-    throw SceneError(fields.place("face"),
+    throw SceneError(fields.location("face"),
                      fmt::format("the face of {} has its centre on none of its cells", fields.what()));
 }
 
@@ -247,13 +248,13 @@ bool read_soft_body(const Value& value, std::size_t index, LatticeFiles& lattice
                   body);
   material.settings.cell_size = body.settings.cell_size;
   if (body.settings.cell_size < static_cast<float>(kLeastCellSize)) {
-    throw SceneError(fields.place("longest_side"),
+    throw SceneError(fields.location("longest_side"),
                      fmt::format("the cells of {} would be {:.3g} m large; they may be no smaller than {}",
                                  fields.what(), body.settings.cell_size, kLeastCellSize));
   }
   body.settings = material.settings_for(step_of(scene));
   if (!replaced && body.picture && !body.coloured_cells.empty())
-    throw SceneError(fields.place("cell_colours"),
+    throw SceneError(fields.location("cell_colours"),
                      fields.what() + " has an image and cell_colours; give one of them");
   if (replaced) {
     body.face.reset();
@@ -278,9 +279,9 @@ std::vector<std::size_t> read_soft_bodies(std::span<const Value> items, const Sc
       of_each.push_back(scene.soft_bodies.back().lattice().particles.size());
       particles += of_each.back();
     } catch (const std::runtime_error& error) {
-      throw SceneError(items[i].place, error.what());
+      throw SceneError(items[i].location, error.what());
     }
-    check_particles(particles, items[i].place);
+    check_particles(particles, items[i].location);
   }
   if (picture && !place_taken) {
     throw NoPlaceForModel("--image cannot be used with scene " + scene.name +
@@ -296,7 +297,7 @@ void read_attachments(std::span<const Value> items, Scene2d& scene) {
     attachment.described = fields.described();
     std::string rigid;
     fields.text("rigid", rigid);
-    if (fields.has("rigid")) attachment.rigid = find_rigid_body(rigid, fields.place("rigid"), scene);
+    if (fields.has("rigid")) attachment.rigid = find_rigid_body(rigid, fields.location("rigid"), scene);
     read_attachment(fields, scene, attachment);
   }
 }
@@ -308,7 +309,7 @@ void read_another_body(const Value& item, const SceneSource& source, Scene2d& sc
   read_soft_body(item, scene.soft_bodies.size(), lattices, Materials(nullptr), nullptr, scene);
   std::size_t particles = 0;
   for (const SoftBody2dPlacement& body : scene.soft_bodies) particles += body.lattice().particles.size();
-  check_added_particles(particles, item.place);
+  check_added_particles(particles, item.location);
 }
 
 Scene2d read_scene_2d(FieldReader& root, const SceneSource& source,

@@ -82,12 +82,12 @@ RigidBox read_box(const Value& value, std::size_t index) {
 /// Counts the vertices of a scene's meshes, so that a scene with more than a picture can show is refused before it costs anything else.
 class VertexCount {
  public:
-  void add(const ppu::TriangleMesh& mesh, const Place& place) {
+  void add(const ppu::TriangleMesh& mesh, const Location& location) {
     vertices_ += mesh.positions.size();
     if (vertices_ > kMaxVerticesOfScene) {
-      throw SceneError(
-          place, fmt::format("the scene's meshes have {} vertices or more; it may have at most {}", vertices_,
-                             kMaxVerticesOfScene));
+      throw SceneError(location,
+                       fmt::format("the scene's meshes have {} vertices or more; it may have at most {}",
+                                   vertices_, kMaxVerticesOfScene));
     }
   }
 
@@ -106,8 +106,8 @@ Obstacle read_obstacle(const Value& value, std::size_t index, MeshFiles& files) 
   return obstacle;
 }
 
-/// Puts the user's model in place of the body's own mesh.
-void take_place(SoftBodyPlacement& body, const OwnModel& model, float longest_side) {
+/// Replaces the body's own mesh by the user's model.
+void replace_mesh(SoftBodyPlacement& body, const OwnModel& model, float longest_side) {
   const ppu::Bounds<3> box = ppu::bounds(model.mesh);
   SC_ASSERT((box.high - box.low).maxCoeff() > 0 && longest_side > 0, "a model {} long is made {} m long",
             (box.high - box.low).maxCoeff(), longest_side);
@@ -118,12 +118,12 @@ void take_place(SoftBodyPlacement& body, const OwnModel& model, float longest_si
 }
 
 /// The number of particles in the lattice that the mesh will get. A scene with too many is refused here, where its file and line are known.
-std::size_t count_particles(const SoftBodyPlacement& body, const Place& place) {
+std::size_t count_particles(const SoftBodyPlacement& body, const Location& location) {
   try {
     ppu::validate(body.settings);
     return ppu::voxelize(body.mesh, body.settings.cell_size).particles.size();
   } catch (const std::runtime_error& error) {
-    throw SceneError(place, error.what());
+    throw SceneError(location, error.what());
   }
 }
 
@@ -140,11 +140,11 @@ void add_cut_material(const Vector3f& colour, SoftBodyPlacement& body) {
 }
 
 /// Splits the mesh's edges so that it bends with the lattice. @param longest_edge  metres
-void tessellate_mesh(float longest_edge, const Place& place, ppu::TriangleMesh& mesh) {
+void tessellate_mesh(float longest_edge, const Location& location, ppu::TriangleMesh& mesh) {
   try {
     mesh = ppu::tessellate(mesh, longest_edge);
   } catch (const std::invalid_argument& error) {
-    throw SceneError(place, error.what());
+    throw SceneError(location, error.what());
   }
 }
 
@@ -175,12 +175,12 @@ bool read_soft_body(const Value& value, std::size_t index, MeshFiles& files, con
   body.own_materials = replaced || !fields.has("colour");
   body.mesh = read_mesh(fields, files);
   if (replaced) {
-    take_place(body, *model, model->longest_side.value_or(*own_model_side));
+    replace_mesh(body, *model, model->longest_side.value_or(*own_model_side));
     material.settings.cell_size = body.settings.cell_size;
     tessellation = model->tessellation;
   }
   rotate(body.mesh, rotation);
-  if (tessellation) tessellate_mesh(*tessellation * material.settings.cell_size, value.place, body.mesh);
+  if (tessellation) tessellate_mesh(*tessellation * material.settings.cell_size, value.location, body.mesh);
   if (cut_colour) add_cut_material(*cut_colour, body);
   body.settings = material.settings_for(step_of(scene));
   body.settings.contacts = contacts;
@@ -196,14 +196,14 @@ std::vector<std::size_t> read_soft_bodies(std::span<const Value> items, MeshFile
   for (std::size_t i = 0; i < items.size(); ++i) {
     const OwnModel* own = model && !place_taken ? &*model : nullptr;
     place_taken = read_soft_body(items[i], i, files, materials, own, scene) || place_taken;
-    vertices.add(scene.soft_bodies.back().mesh, items[i].place);
+    vertices.add(scene.soft_bodies.back().mesh, items[i].location);
   }
   std::vector<std::size_t> of_each;
   std::size_t particles = 0;
   for (std::size_t i = 0; i < items.size(); ++i) {
-    of_each.push_back(count_particles(scene.soft_bodies[i], items[i].place));
+    of_each.push_back(count_particles(scene.soft_bodies[i], items[i].location));
     particles += of_each.back();
-    check_particles(particles, items[i].place);
+    check_particles(particles, items[i].location);
   }
   if (model && !place_taken) {
     throw NoPlaceForModel("--mesh cannot be used with scene " + scene.name +
@@ -222,10 +222,10 @@ void read_attachments(std::span<const Value> items, std::size_t first_box, Scene
     int box = 0;
     fields.text("rigid", rigid)
         .integer("box", box, 1, static_cast<int>(std::max<std::size_t>(scene.boxes.size() - first_box, 1)));
-    if (fields.has("rigid")) attachment.rigid = find_rigid_body(rigid, fields.place("rigid"), scene);
+    if (fields.has("rigid")) attachment.rigid = find_rigid_body(rigid, fields.location("rigid"), scene);
     if (fields.has("box")) {
       if (first_box == scene.boxes.size())
-        throw SceneError(fields.place("box"), fields.what() + " names a box; the scene has none");
+        throw SceneError(fields.location("box"), fields.what() + " names a box; the scene has none");
       attachment.box = first_box + static_cast<std::size_t>(box) - 1;
     }
     read_attachment(fields, scene, attachment);
@@ -243,11 +243,11 @@ void read_camera(const Value& value, render::Camera& camera) {
       .number("far", camera.far_plane, kLength)
       .finish();
   if (camera.far_plane <= camera.near_plane) {
-    throw SceneError(fields.place("far"), "far of camera must be larger than near");
+    throw SceneError(fields.location("far"), "far of camera must be larger than near");
   }
   const Vector3f sight = camera.target - camera.eye;
   if (sight.cross(camera.up).norm() <= 1e-4f * sight.norm() * camera.up.norm()) {
-    throw SceneError(fields.place("target"),
+    throw SceneError(fields.location("target"),
                      "the camera's eye and target must differ, and up must not lie along the line of sight");
   }
 }
@@ -261,7 +261,8 @@ void read_light(const Value& value, render::Light& light) {
       .vector<3>("shadow_centre", light.shadow_centre, kCoordinate)
       .number("shadow_radius", light.shadow_radius, kLength)
       .finish();
-  if (light.toward.norm() < 1e-4f) throw SceneError(fields.place("toward"), "toward of light must not be 0");
+  if (light.toward.norm() < 1e-4f)
+    throw SceneError(fields.location("toward"), "toward of light must not be 0");
 }
 
 void read_tilt(const Value& value, TiltScript& tilt) {
@@ -281,14 +282,14 @@ void read_another_body(const Value& item, const SceneSource& source, Scene& scen
   VertexCount vertices;
   std::size_t particles = 0;
   for (const SoftBodyPlacement& body : scene.soft_bodies) {
-    vertices.add(body.mesh, item.place);
-    particles += count_particles(body, item.place);
+    vertices.add(body.mesh, item.location);
+    particles += count_particles(body, item.location);
   }
   MeshFiles files(source);
   read_soft_body(item, scene.soft_bodies.size(), files, Materials(nullptr), nullptr, scene);
-  vertices.add(scene.soft_bodies.back().mesh, item.place);
-  particles += count_particles(scene.soft_bodies.back(), item.place);
-  check_added_particles(particles, item.place);
+  vertices.add(scene.soft_bodies.back().mesh, item.location);
+  particles += count_particles(scene.soft_bodies.back(), item.location);
+  check_added_particles(particles, item.location);
   scene.notes.insert(scene.notes.end(), files.notes().begin(), files.notes().end());
 }
 
@@ -318,7 +319,7 @@ Scene read_scene_3d(FieldReader& root, const SceneSource& source, const std::opt
   MeshFiles files(source);
   for (std::size_t i = 0; i < obstacles.size(); ++i) {
     scene.obstacles.push_back(read_obstacle(obstacles[i], i, files));
-    vertices.add(scene.obstacles.back().mesh, obstacles[i].place);
+    vertices.add(scene.obstacles.back().mesh, obstacles[i].location);
   }
   const std::vector<std::size_t> particles =
       read_soft_bodies(soft_bodies, files, materials, model, vertices, scene);

@@ -49,8 +49,8 @@ class SavedScene {
   /// The name of the command line's file in the saved scene.
   std::string own_file() const { return relative(document_.own->file); }
 
-  /// Keeps a file that a body names, which the saved scene must find as well.
-  void keep_file(Table& item, std::string_view field) {
+  /// Rewrites the name of a file that a body names so that the saved scene finds it.
+  void make_file_findable(Table& item, std::string_view field) {
     Value* const value = find_field(item, field);
     if (value == nullptr) return;
     const auto& name = std::get<std::string>(value->data);
@@ -77,7 +77,7 @@ class SavedScene {
     set_field(table_in(root_, "begin"), "state", text_value(state.filename().string()));
     std::vector<SceneFile> all{{file_, fmt::format("# The scene {} after {} frames, as softcell saved it.\n",
                                                    printable(scene_name), moment.frames) +
-                                           write_toml({.data = root_, .place = {}})},
+                                           write_toml({.data = root_, .location = {}})},
                                {state, state_to_text(moment)}};
     std::ranges::move(copies_, std::back_inserter(all));
     return all;
@@ -91,14 +91,14 @@ class SavedScene {
   }
 
   std::string relative(const fs::path& file) const {
-    const fs::path place = fs::weakly_canonical(fs::absolute(file));
-    const fs::path way = place.lexically_relative(folder_);
+    const fs::path location = fs::weakly_canonical(fs::absolute(file));
+    const fs::path way = location.lexically_relative(folder_);
     if (way.empty() || *way.begin() == "..")
       throw std::runtime_error(
           fmt::format("the scene cannot be saved as {}: it uses {}, and a scene names files below its own "
                       "folder only; save it "
                       "in {}",
-                      file_.string(), file.string(), place.parent_path().string()));
+                      file_.string(), file.string(), location.parent_path().string()));
     return way.generic_string();
   }
 
@@ -185,7 +185,7 @@ void save_files_of_bodies(const SceneOf& scene, SavedScene& saved, std::string_v
     const float cell_size = scene.soft_bodies[number++].settings.cell_size;
     const Value* const length = is_named ? nullptr : find_field(table, side);
     if (length == nullptr) {
-      for (const std::string_view field : others) saved.keep_file(table, field);
+      for (const std::string_view field : others) saved.make_file_findable(table, field);
       continue;
     }
     is_named = true;
@@ -277,7 +277,7 @@ std::vector<SceneFile> saved_scene(const Scene& scene, const PresentScene<3>& no
   save_files_of_bodies(scene, saved, "own_model_side", "mesh", {"shape", "mesh", "scale", "up", "colour"},
                        {"mesh"});
   if (Array* const obstacles = items_in(root, "obstacle"))
-    for (Value& obstacle : *obstacles) saved.keep_file(std::get<Table>(obstacle.data), "mesh");
+    for (Value& obstacle : *obstacles) saved.make_file_findable(std::get<Table>(obstacle.data), "mesh");
   return saved.files(now.moment, scene.name);
 }
 

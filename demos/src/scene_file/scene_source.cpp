@@ -91,49 +91,49 @@ SceneSource SceneSource::of_user(std::vector<fs::path> files) {
 
 std::string SceneSource::name() const { return fs::path(*main_.name).stem().string(); }
 
-fs::path SceneSource::locate(const std::string& file, const Place& place) const {
+fs::path SceneSource::locate(const std::string& file, const Location& location) const {
   SC_ASSERT(main_.name != nullptr, "a scene without a name names the file '{}'", file);
   const fs::path named(file);
   if (file.empty() || !is_printable(file))
-    throw SceneError(place, "a file needs a name of printable characters");
+    throw SceneError(location, "a file needs a name of printable characters");
   if (!folder_ && !named.is_absolute())
-    throw SceneError(place, fmt::format("there is no built-in file '{}'", file));
+    throw SceneError(location, fmt::format("there is no built-in file '{}'", file));
   std::error_code error;
   const fs::path found = fs::weakly_canonical(named.is_absolute() ? named : *folder_ / named, error);
   const bool of_user = std::ranges::find(of_user_, named) != of_user_.end();
   const bool allowed = !error && (of_user || is_below(found, kSystemData) ||
                                   (folder_ && !named.is_absolute() && is_below(found, *folder_)));
   if (!allowed) {
-    throw SceneError(
-        place, fmt::format("'{}' is outside; a scene may name files below its own folder, and below {}", file,
-                           kSystemData));
+    throw SceneError(location,
+                     fmt::format("'{}' is outside; a scene may name files below its own folder, and below {}",
+                                 file, kSystemData));
   }
   files_.push_back(found);
   return found;
 }
 
-SourceText SceneSource::text(const std::string& file, const Place& place) const {
+SourceText SceneSource::text(const std::string& file, const Location& location) const {
   if (!folder_) {
     if (const base::EmbeddedFile* embedded = base::find_embedded(embedded_scenes(), file))
       return embedded_text(*embedded);
   }
-  const fs::path path = locate(file, place);
+  const fs::path path = locate(file, location);
   try {
     return read_text(path);
   } catch (const std::runtime_error& error) {
-    throw SceneError(place, error.what());
+    throw SceneError(location, error.what());
   }
 }
 
-fs::path SceneSource::mesh(const std::string& file, const Place& place) const {
-  fs::path path = locate(file, place);
+fs::path SceneSource::mesh(const std::string& file, const Location& location) const {
+  fs::path path = locate(file, location);
   std::error_code error;
   if (fs::is_directory(path, error))
-    throw SceneError(place, fmt::format("'{}' is a folder; expected is a mesh file", file));
+    throw SceneError(location, fmt::format("'{}' is a folder; expected is a mesh file", file));
   if (!fs::is_regular_file(path, error)) {
     const bool bunny = !folder_ && file.ends_with("bunny.obj");
-    throw SceneError(place, fmt::format("there is no mesh file '{}'{}", file,
-                                        bunny ? ": install the package glmark2-data" : ""));
+    throw SceneError(location, fmt::format("there is no mesh file '{}'{}", file,
+                                           bunny ? ": install the package glmark2-data" : ""));
   }
   return path;
 }
@@ -146,23 +146,23 @@ void SceneSource::add_files(std::span<const fs::path> files) const {
   files_.insert(files_.end(), files.begin(), files.end());
 }
 
-fs::path SceneSource::picture(const std::string& file, const Place& place) const {
-  fs::path path = locate(file, place);
+fs::path SceneSource::picture(const std::string& file, const Location& location) const {
+  fs::path path = locate(file, location);
   std::error_code error;
   if (fs::is_directory(path, error))
-    throw SceneError(place, fmt::format("'{}' is a folder; expected is a picture file", file));
+    throw SceneError(location, fmt::format("'{}' is a folder; expected is a picture file", file));
   if (!fs::is_regular_file(path, error))
-    throw SceneError(place, fmt::format("there is no picture file '{}'", file));
+    throw SceneError(location, fmt::format("there is no picture file '{}'", file));
   return path;
 }
 
-std::string SceneSource::state(const std::string& file, const Place& place) const {
-  const fs::path path = locate(file, place);
+std::string SceneSource::state(const std::string& file, const Location& location) const {
+  const fs::path path = locate(file, location);
   try {
     const auto bytes = base::read_file(path, kMaxStateBytes);
     return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
   } catch (const std::runtime_error& error) {
-    throw SceneError(place, error.what());
+    throw SceneError(location, error.what());
   }
 }
 

@@ -47,22 +47,22 @@ class SceneSource {
   /// The files of the user that the scene has named so far, the scene file included, whether or not they exist.
   const std::vector<std::filesystem::path>& files() const { return files_; }
 
-  /// A file that the scene names at `place`. @throws SceneError  there is no such file, or the scene may not name it.
-  SourceText text(const std::string& file, const Place& place) const;
-  std::filesystem::path mesh(const std::string& file, const Place& place) const;
+  /// A file that the scene names at `location`. @throws SceneError  there is no such file, or the scene may not name it.
+  SourceText text(const std::string& file, const Location& location) const;
+  std::filesystem::path mesh(const std::string& file, const Location& location) const;
   /// A model that is built in, for a built-in scene; null: there is no such model.
   const base::EmbeddedFile* embedded_mesh(const std::string& file) const;
   /// Adds files that belong to the scene: those that its meshes name.
   void add_files(std::span<const std::filesystem::path> files) const;
-  std::filesystem::path picture(const std::string& file, const Place& place) const;
+  std::filesystem::path picture(const std::string& file, const Location& location) const;
   /// The text of a saved state (state_file.h). @throws SceneError
-  std::string state(const std::string& file, const Place& place) const;
+  std::string state(const std::string& file, const Location& location) const;
 
   /// The folder of the scene file; none: the scene is built in, or in memory.
   const std::optional<std::filesystem::path>& folder() const { return folder_; }
 
  private:
-  std::filesystem::path locate(const std::string& file, const Place& place) const;
+  std::filesystem::path locate(const std::string& file, const Location& location) const;
 
   SourceText main_;
   std::optional<std::filesystem::path> folder_;       // none: built in

@@ -1,5 +1,5 @@
 #pragma once
-// The parts of saving and restoring a moment of a run that are the same in both dimensions.
+// The parts of the beginning of a run, and of saving and restoring one of its moments, that are the same in both dimensions.
 
 #include <fmt/format.h>
 
@@ -8,7 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "describe_refusal.h"
 #include "input/controls.h"
+#include "scene/attachment_placement.h"
 #include "scene/beginning.h"
 #include "softcell/base/assert.h"
 #include "softcell/soft_bodies/attachment.h"
@@ -39,8 +41,8 @@ inline std::string has_broken(const std::string& scene, const std::string& body)
 /// Moves a body's particles to where the scene begins with them.
 /// @throws std::runtime_error  the state belongs to another body
 template <int Dimension>
-void put(ppu::SoftBody<Dimension>& body, const typename Beginning<Dimension>::SoftBody& state,
-         const std::string& name) {
+void set_beginning(ppu::SoftBody<Dimension>& body, const typename Beginning<Dimension>::SoftBody& state,
+                   const std::string& name) {
   SC_ASSERT(state.positions.size() == state.velocities.size(), "{} positions and {} velocities of body '{}'",
             state.positions.size(), state.velocities.size(), name);
   SC_ASSERT(state.rest.empty() || state.rest.size() == state.positions.size(),
@@ -54,13 +56,13 @@ void put(ppu::SoftBody<Dimension>& body, const typename Beginning<Dimension>::So
 
 /// The same for all soft bodies of a scene, except those added at this moment: they stay where they are placed.
 template <int Dimension, class SceneOf, class Bodies>
-void put_soft_bodies(const SceneOf& scene, Bodies& bodies) {
+void set_beginnings(const SceneOf& scene, Bodies& bodies) {
   const Beginning<Dimension>& begin = *scene.begin;
   if (begin.soft_bodies.size() > scene.soft_bodies.size())
     throw std::runtime_error(fmt::format("the scene {} has {} soft bodies, and its saved state has {}",
                                          scene.name, scene.soft_bodies.size(), begin.soft_bodies.size()));
   for (std::size_t b = 0; b < begin.soft_bodies.size(); ++b)
-    put<Dimension>(bodies[b], begin.soft_bodies[b], scene.soft_bodies[b].name);
+    set_beginning<Dimension>(bodies[b], begin.soft_bodies[b], scene.soft_bodies[b].name);
 }
 
 /// @throws std::runtime_error  the number of rigid bodies in the scene's saved state is not `moving`
@@ -70,6 +72,29 @@ void check_moving_bodies(const SceneOf& scene, std::size_t moving) {
   throw std::runtime_error(
       fmt::format("the scene {} has {} rigid bodies that move, and its saved state has {}", scene.name,
                   moving, scene.begin->rigid_bodies.size()));
+}
+
+/// Makes all attachments of a scene. @param rigid_of  gives the rigid body of a placement, or null
+/// @return  their ids, in the scene's order   @throws std::runtime_error  one of them cannot be made
+template <int Dimension, class SceneOf, class Bodies, class RigidOf>
+std::vector<ppu::AttachmentId> make_attachments(const SceneOf& scene, Bodies& bodies,
+                                                const RigidOf& rigid_of) {
+  using Patch = ppu::Patch<Dimension>;
+  std::vector<ppu::AttachmentId> made;
+  for (const AttachmentPlacement<Dimension>& placement : scene.attachments) {
+    const ppu::SoftBody<Dimension>& body = bodies[placement.body];
+    const auto patch = Patch::of_surface(placement.at, placement.radius);
+    made.push_back(describe_refusal(placement.described, [&] {
+      if (placement.other) {
+        const auto other = Patch::of_surface(placement.other_at, placement.other_radius);
+        return bodies.attach(body, patch, bodies[*placement.other], other, placement.settings);
+      }
+      if (auto* const rigid = rigid_of(placement))
+        return bodies.attach(body, patch, *rigid, placement.settings);
+      return bodies.attach(body, patch, placement.settings);
+    }));
+  }
+  return made;
 }
 
 /// Ends the attachments that had ended before the scene begins. @param attachments  of the scene, in order

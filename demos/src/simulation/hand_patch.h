@@ -116,14 +116,14 @@ struct HeldRest {
   std::vector<Eigen::Matrix<float, Dimension, 1>> positions;  ///< of the body's particles, metres
   Eigen::Vector<double, Dimension> centre = Eigen::Vector<double, Dimension>::Zero();  ///< of its mass
 
-  explicit HeldRest(const ppu::SoftBody<Dimension>& body) { take(body); }
+  explicit HeldRest(const ppu::SoftBody<Dimension>& body) { copy_rest(body); }
   /// Updates the shape if the body has yielded since; only then does it allocate.
   void renew(const ppu::SoftBody<Dimension>& body) {
-    if (body.rest_revision() != revision_) take(body);
+    if (body.rest_revision() != revision_) copy_rest(body);
   }
 
  private:
-  void take(const ppu::SoftBody<Dimension>& body) {
+  void copy_rest(const ppu::SoftBody<Dimension>& body) {
     revision_ = body.rest_revision();
     const auto masses = body.model().masses();
     if (body.has_own_rest()) {

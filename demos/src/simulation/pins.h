@@ -60,7 +60,7 @@ class Pins {
   /// Replaces all pins by those of a saved moment.
   /// @param bodies  as they were at that moment  @throws std::runtime_error  one of the pins cannot be made
   template <class SoftBodies>
-  void put(SoftBodies& bodies, const std::vector<SavedPin>& pins) {
+  void replace(SoftBodies& bodies, const std::vector<SavedPin>& pins) {
     remove(bodies, kEveryBody);
     for (const SavedPin& pin : pins) {
       try {

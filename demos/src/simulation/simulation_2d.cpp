@@ -146,26 +146,14 @@ struct World {
   }
 
   void attach(const Scene2d& scene) {
-    for (const AttachmentPlacement<2>& placement : scene.attachments) {
-      const ppu::SoftBody<2>& body = soft_bodies[placement.body];
-      const auto patch = ppu::Patch<2>::of_surface(placement.at, placement.radius);
-      describe_refusal(placement.described, [&] {
-        if (placement.other)
-          attachments.push_back(soft_bodies.attach(
-              body, patch, soft_bodies[*placement.other],
-              ppu::Patch<2>::of_surface(placement.other_at, placement.other_radius), placement.settings));
-        else if (placement.rigid)
-          attachments.push_back(
-              soft_bodies.attach(body, patch, *rigid_bodies[*placement.rigid], placement.settings));
-        else
-          attachments.push_back(soft_bodies.attach(body, patch, placement.settings));
-      });
-    }
+    attachments = make_attachments<2>(scene, soft_bodies, [&](const AttachmentPlacement<2>& placement) {
+      return placement.rigid ? rigid_bodies[*placement.rigid] : nullptr;
+    });
   }
 
   /// Puts everything where the scene begins, if that is a moment of a run.
   void begin(const Scene2d& scene) {
-    put_soft_bodies<2>(scene, soft_bodies);
+    set_beginnings<2>(scene, soft_bodies);
     const auto moves = [](const b2Body* body) { return body->GetType() == b2_dynamicBody; };
     check_moving_bodies(scene, static_cast<std::size_t>(std::ranges::count_if(rigid_bodies, moves)));
     for (const Beginning<2>::RigidBody& rigid : scene.begin->rigid_bodies) {
@@ -278,11 +266,11 @@ struct Simulation2d::State {
   /// Pieces appear some substeps later. In a pause, which has no substeps, they appear at once.
   void cut(const ppu::Cut2d& where, std::optional<std::size_t> source) {
     cut_bodies(world->soft_bodies, scene_bodies.sources(), source, controls.paused(), where);
-    note_broken();
+    adopt_pieces();
   }
   /// Call it after a step or a cut. Pieces are placed after all other bodies, and hands go on with the piece that has what they hold, if
   /// there is one.
-  void note_broken() {
+  void adopt_pieces() {
     const std::vector<ppu::BrokenSoftBody2d> broken = world->soft_bodies.poll_broken();
     scene_bodies.add_pieces(world->soft_bodies, broken);
     held.follow(broken);
@@ -311,7 +299,7 @@ struct Simulation2d::State {
     world.reset();  // destroys its worker before the next one is made
     world.emplace(scene, scene_bodies.whole(), *solver, contacts,
                   spes ? spes->make_contact_worker() : nullptr);
-    if (scene.begin) pins.put(world->soft_bodies, scene.begin->pins);
+    if (scene.begin) pins.replace(world->soft_bodies, scene.begin->pins);
     scene_bodies.forget_pieces();
   }
   void home(std::size_t body) {
@@ -389,7 +377,7 @@ FrameTimes Simulation2d::step(std::span<const InputEvent<2>> events) {
     s.controls.hands().pull(s.bodies);
     s.held.pull(i, substeps, s.controls.gravity(), s.substep());
     in_box2d += world.step(s.substep());
-    s.note_broken();
+    s.adopt_pieces();
   }
 
   // The SPEs work on the next frame's first step while this frame is drawn.

@@ -231,22 +231,10 @@ struct Simulation3d::State {
 
   /// Makes all attachments that the scene states, also those that have broken.
   void attach() {
-    attachments.clear();
-    for (const AttachmentPlacement<3>& placement : scene.attachments) {
-      const ppu::SoftBody<3>& body = soft_bodies[placement.body];
-      const auto patch = ppu::Patch<3>::of_surface(placement.at, placement.radius);
-      describe_refusal(placement.described, [&] {
-        if (placement.other)
-          attachments.push_back(soft_bodies.attach(
-              body, patch, soft_bodies[*placement.other],
-              ppu::Patch<3>::of_surface(placement.other_at, placement.other_radius), placement.settings));
-        else if (const auto rigid = rigid_of(placement))
-          attachments.push_back(
-              soft_bodies.attach(body, patch, world.rigid_body(boxes[*rigid]), placement.settings));
-        else
-          attachments.push_back(soft_bodies.attach(body, patch, placement.settings));
-      });
-    }
+    attachments = make_attachments<3>(scene, soft_bodies, [&](const AttachmentPlacement<3>& placement) {
+      const auto rigid = rigid_of(placement);
+      return rigid ? &world.rigid_body(boxes[*rigid]) : nullptr;
+    });
   }
 
   Eigen::Matrix3f present_tilt() const {
@@ -266,9 +254,9 @@ struct Simulation3d::State {
     if (!scene.begin) return;
     tilt = present_tilt();
     for_each_moved(scene.begin->seconds, [&](auto body, const auto& position, const auto& rotation) {
-      world.put(body, position, rotation);
+      world.teleport(body, position, rotation);
     });
-    put_soft_bodies<3>(scene, soft_bodies);
+    set_beginnings<3>(scene, soft_bodies);
     std::size_t moving = 0;
     for (std::size_t i = 0; i < world.rigid_bodies(); ++i) moving += world.moves(i) ? 1 : 0;
     check_moving_bodies(scene, moving);
@@ -276,13 +264,13 @@ struct Simulation3d::State {
       if (rigid.body >= world.rigid_bodies() || !world.moves(rigid.body))
         throw std::runtime_error(fmt::format("rigid body {} of the saved state does not move in the scene {}",
                                              rigid.body, scene.name));
-      world.put(rigid.body, {.position = rigid.position,
-                             .rotation = rigid.rotation,
-                             .velocity = rigid.velocity,
-                             .angular_velocity = rigid.angular_velocity});
+      world.teleport(rigid.body, {.position = rigid.position,
+                                  .rotation = rigid.rotation,
+                                  .velocity = rigid.velocity,
+                                  .angular_velocity = rigid.angular_velocity});
     }
     end_attachments(scene, attachments, soft_bodies);
-    pins.put(soft_bodies, scene.begin->pins);
+    pins.replace(soft_bodies, scene.begin->pins);
   }
   Beginning<3> moment() const {
     if (const auto broken = scene_bodies.first_broken(soft_bodies))
@@ -324,7 +312,7 @@ struct Simulation3d::State {
   }
 
   /// Call it after a substep or a cut. Pieces are placed after all other bodies, and hands let go of what has broken.
-  void note_broken() {
+  void adopt_pieces() {
     const std::vector<ppu::BrokenSoftBody> broken = soft_bodies.poll_broken();
     scene_bodies.add_pieces(soft_bodies, broken);
     for (const ppu::BrokenSoftBody& one : broken) let_go(number_in(soft_bodies, *one.body));
@@ -348,7 +336,7 @@ struct Simulation3d::State {
   /// Pieces appear some substeps later. In a pause, which has no substeps, they appear at once.
   void cut(const ppu::Cut& where, std::optional<std::size_t> source) {
     cut_bodies(soft_bodies, scene_bodies.sources(), source, controls.paused(), where);
-    note_broken();
+    adopt_pieces();
   }
 
   void copy_contacts(Snapshot3d& snapshot) const {
@@ -431,7 +419,7 @@ struct Simulation3d::State {
       const ppu::StepTimes of_substep = world.step(step, 1);
       times.physics_ms += of_substep.physics_ms;
       times.soft_body_ms += of_substep.soft_body_ms;
-      note_broken();
+      adopt_pieces();
     }
     return times;
   }

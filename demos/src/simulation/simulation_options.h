@@ -4,6 +4,7 @@
 #include <optional>
 #include <string_view>
 
+#include "scene/frame_time.h"
 #include "softcell/dma/addresses.h"
 #include "softcell/dma/schedule.h"
 #include "softcell/ls_sim/spe_options.h"
@@ -13,8 +14,6 @@
 #include "softcell/spu_kernels/load_kernel.h"
 
 namespace softcell::demos {
-
-inline constexpr float kFrameSeconds = 1.0f / 60;  // of simulated time
 
 /// Who does shape matching and damping.
 enum class Solver {

@@ -33,7 +33,7 @@ std::vector<DrawnPart> add_parts(std::span<const RigidBody> bodies, const AddSta
   std::vector<DrawnPart> parts;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     for (const RigidPart& part : bodies[b].parts) {
-      parts.push_back({.body = b, .draw = statics.size(), .place = part.place()});
+      parts.push_back({.body = b, .draw = statics.size(), .pose_in_body = part.pose()});
       statics.push_back({.mesh = add_static(mesh_of_rigid(part.shape)),
                          .colour = part.colour,
                          .opacity = bodies[b].opacity});

@@ -14,8 +14,8 @@ namespace softcell::demos {
 
 /// A part of a rigid body in the list of draws.
 struct DrawnPart {
-  std::size_t body = 0, draw = 0;                       ///< their numbers
-  Eigen::Matrix4f place = Eigen::Matrix4f::Identity();  ///< from the part's frame to the body's
+  std::size_t body = 0, draw = 0;                              ///< their numbers
+  Eigen::Matrix4f pose_in_body = Eigen::Matrix4f::Identity();  ///< from the part's frame to the body's
 };
 
 /// Adds a mesh to the renderer.

@@ -275,7 +275,7 @@ void SceneView::draw(const Shown3d& shown, int view, const render::Camera& camer
       statics_[i].opacity = wall_opacity(scene_.boxes[i], shown.box_poses[i], camera.eye);
   }
   for (const DrawnPart& part : rigid_parts_)
-    statics_[part.draw].pose = shown.box_poses[boxes + part.body] * part.place;
+    statics_[part.draw].pose = shown.box_poses[boxes + part.body] * part.pose_in_body;
 
   frame_ = {};
   frame_.camera = camera;

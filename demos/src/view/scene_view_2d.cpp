@@ -263,7 +263,7 @@ void SceneView2d::draw(const Shown2d& shown, const Look& look) {
   }
   for (std::size_t b = 0; b < soft_bodies_.size(); ++b) {
     soft_bodies_[b]->particles.assign(shown.particles[b].begin(), shown.particles[b].end());
-    soft_bodies_[b]->shape.place(shown.particles[b]);
+    soft_bodies_[b]->shape.deform(shown.particles[b]);
     draw_soft_body(b, view);
   }
   draw_ropes(shown);

@@ -196,7 +196,7 @@ void SoftShape2d::add_face(const Face2d& face) {
   for (Spots& spots : spots_) spots.centres.resize(spots.places.size());
 }
 
-void SoftShape2d::place(std::span<const Vector2f> particles) {
+void SoftShape2d::deform(std::span<const Vector2f> particles) {
   SC_ASSERT(particles.size() == model_.particles(), "{} particles of body '{}' with {}", particles.size(),
             body_.name, model_.particles());
   box_.setEmpty();

@@ -73,9 +73,9 @@ class SoftShape2d {
   void remove_from(render::Renderer& renderer) const;
 
   /// Deforms it to fit its particles.
-  void place(std::span<const Eigen::Vector2f> particles);
+  void deform(std::span<const Eigen::Vector2f> particles);
 
-  /// Adds it to a drawing in its last place().
+  /// Adds it to a drawing as of the last deform().
   /// @param line_width  metres  @param opacity  of the body, 0..1; a pale body has no face
   void draw(Drawing2d& drawing, float line_width, float opacity) const;
 

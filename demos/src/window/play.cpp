@@ -35,7 +35,7 @@ struct Overlays {
       : scale(text_scale), overlay(text_scale), panel(std::move(scenes), pictures) {}
 
   /// @return true: the event is for the panel
-  bool take(const SDL_Event& event, float density, WindowInput& scene) {
+  bool handle(const SDL_Event& event, float density, WindowInput& scene) {
     if (!scene.look().menu) {  // except for the release of what went down on it
       if (event.type == SDL_KEYUP || event.type == SDL_MOUSEBUTTONUP) input.handle(event, density, panel);
       return false;
@@ -106,17 +106,17 @@ class PlayedScene {
   }
 
   void handle(const SDL_Event& event) {
-    if (!overlays_.take(event, window_.density(), demo_.input())) demo_.input().handle(event);
+    if (!overlays_.handle(event, window_.density(), demo_.input())) demo_.input().handle(event);
   }
 
   void step() {
-    if (demo_.input().take_save()) save();
+    if (demo_.input().poll_save()) save();
     if (demo_.input().look().knife && demo_.dimension() == 3 &&
         demo_.contacts() == ppu::ContactMethod::kSpheres) {
       demo_.input().do_now(Command::kKnife);
       overlays_.notice.show("bodies that touch with spheres cannot be cut; start with --contacts surface");
     }
-    if (demo_.input().take_pinned() && demo_.dimension() == 3 &&
+    if (demo_.input().poll_pinned() && demo_.dimension() == 3 &&
         demo_.contacts() == ppu::ContactMethod::kSpheres)
       overlays_.notice.show("bodies that touch with spheres cannot be pinned; start with --contacts surface");
     const FrameTimes times = demo_.step();
@@ -161,8 +161,8 @@ class PlayedScene {
   }
   /// This scene with the change that the user has asked for in the menu or by keys.
   std::unique_ptr<Demo> with_change(const SimulationOptions& how) {
-    std::optional<SceneChange> change = overlays_.panel.take_change();
-    if (demo_.input().take_remove()) {
+    std::optional<SceneChange> change = overlays_.panel.poll_change();
+    if (demo_.input().poll_remove()) {
       const auto picked = demo_.picked();
       if (!picked) overlays_.notice.show("take hold of the soft body that is to be removed");
       if (picked) change = {.kind = SceneChange::Kind::kRemove, .body = picked->body};
@@ -311,8 +311,8 @@ class Player {
       handle_events(scene, next);
       scene.step();
       if (demo.input().wants_next_scene() && scenes_.size() > 1) next.number = (number + 1) % scenes_.size();
-      if (const auto choice = panel.take_choice()) next.number = *choice;
-      if (const auto file = panel.take_file(); file && !next)
+      if (const auto choice = panel.poll_choice()) next.number = *choice;
+      if (const auto file = panel.poll_file(); file && !next)
         next = {.demo = scene.with_file(*file, how_), .number = {}, .same_scene = false};
       if (!next) next = {.demo = scene.with_change(how_), .number = {}, .same_scene = true};
     }

@@ -29,7 +29,7 @@ Spe::Spe(int number, dma::AddressSpace& memory, const SpeOptions& options, SpeMo
       monitor_(monitor),
       trace_(options.trace == nullptr ? nullptr : &options.trace->spe(number)),
       timer_(options.timing == nullptr ? nullptr : &options.timing->timer(number)),
-      local_store_(memory.place_of_local_store(number)),
+      local_store_(memory.host_address_of_local_store(number)),
       mfc_(local_store_.bytes(), memory, options.schedule, static_cast<std::uint64_t>(number), this),
       engine_(std::make_unique<EngineByImage>(
           local_store_, dma::local_store_ea(number),
@@ -93,7 +93,7 @@ RunResult Spe::run(const Run& run) {
   if (job_) result.job = job_->ea;
   end_is_wanted_ = false;
   // Whatever a kernel that failed did to its local store goes with it.
-  if (result.fault || options_.reload_always) resident_ = nullptr;
+  if (result.fault) resident_ = nullptr;
   job_.reset();
   return result;
 }

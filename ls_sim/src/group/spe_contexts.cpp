@@ -228,7 +228,7 @@ class Context final : public SpeContext, private StopListener {
     return wait_for_stop(lock);
   }
 
-  void give_up() override {
+  void end_run() override {
     SpeMonitor::Lock lock = monitor_.lock();
     require_stopped();
     abandon(lock);

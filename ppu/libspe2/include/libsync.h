@@ -1,23 +1,13 @@
-/* Words in main storage that the PPU side shares with SPEs: counters, locks, conditions and completions, as inline functions: there is no
- * -lsync. They are those of the SPU side's libsync.h, which says what each does.
- * [SDK for Multicore Acceleration, sync library] documented */
+/* Objects in main storage by which the PPU side and SPEs synchronise, as inline functions: there is no -lsync. softcell_sync.h says what
+ * they are and what the functions do. */
 #ifndef SOFTCELL_LIBSYNC_H
 #define SOFTCELL_LIBSYNC_H
 #if defined(__INCLUDE_LEVEL__) && __INCLUDE_LEVEL__ > 0
 #pragma GCC system_header /* as on a Cell: no warnings of it, whatever standard the program asks for */
 #endif
 
+#include <softcell_sync.h>
 #include <stdint.h>
-
-/* Effective addresses are pointers of the program: (mutex_ea_t)(uintptr_t)&word. */
-typedef unsigned long long eaddr_t;
-typedef unsigned long long atomic_ea_t;
-typedef unsigned long long mutex_ea_t;
-typedef unsigned long long cond_ea_t;
-typedef unsigned long long completion_ea_t;
-typedef struct {
-  unsigned int word, others[31];
-} __attribute__((aligned(128))) condition_variable_t;
 
 #define SOFTCELL_SYNC_INLINE static __inline__ __attribute__((unused))
 
@@ -121,12 +111,12 @@ SOFTCELL_SYNC_INLINE void write_lock(eaddr_t lock) {
 }
 SOFTCELL_SYNC_INLINE void write_unlock(eaddr_t lock) { softcell_sync_store(lock, 0); }
 
-/* ---- conditions: those who wait are counted in the low half of the word, and in the high half those of them who may go on */
+/* ---- conditions */
 
 SOFTCELL_SYNC_INLINE void cond_init(cond_ea_t cond) { softcell_sync_store(cond, 0); }
 SOFTCELL_SYNC_INLINE void cond_wait(cond_ea_t cond, mutex_ea_t mutex) {
   unsigned int looks = 0, word = softcell_sync_load(cond);
-  /* Who comes after a signal lets those go first to whom it was given: it would take it from them. */
+  /* One that comes after a signal waits until those that the signal was for have gone on. */
   while (word >> 16 != 0 || !softcell_sync_change(cond, word, word + 1)) {
     softcell_sync_give_way(&looks);
     word = softcell_sync_load(cond);
@@ -153,7 +143,7 @@ SOFTCELL_SYNC_INLINE void cond_broadcast(cond_ea_t cond) {
   } while (!softcell_sync_change(cond, word, (word & 0xFFFF) * 0x10001u));
 }
 
-/* ---- completions: 0, or how many may pass: one, or below 0 all */
+/* ---- completions */
 
 SOFTCELL_SYNC_INLINE void init_completion(completion_ea_t completion) { softcell_sync_store(completion, 0); }
 SOFTCELL_SYNC_INLINE void wait_for_completion(completion_ea_t completion) {
@@ -167,38 +157,5 @@ SOFTCELL_SYNC_INLINE void complete(completion_ea_t completion) { softcell_sync_c
 SOFTCELL_SYNC_INLINE void complete_all(completion_ea_t completion) {
   softcell_sync_store(completion, (unsigned int)-1);
 }
-
-#define _atomic_read atomic_read
-#define _atomic_set atomic_set
-#define _atomic_add atomic_add
-#define _atomic_sub atomic_sub
-#define _atomic_inc atomic_inc
-#define _atomic_dec atomic_dec
-#define _atomic_add_return atomic_add_return
-#define _atomic_sub_return atomic_sub_return
-#define _atomic_inc_return atomic_inc_return
-#define _atomic_dec_return atomic_dec_return
-#define _atomic_sub_and_test atomic_sub_and_test
-#define _atomic_dec_and_test atomic_dec_and_test
-#define _atomic_dec_if_positive atomic_dec_if_positive
-#define _mutex_init mutex_init
-#define _mutex_lock mutex_lock
-#define _mutex_trylock mutex_trylock
-#define _mutex_unlock mutex_unlock
-#define _cond_init cond_init
-#define _cond_wait cond_wait
-#define _cond_signal cond_signal
-#define _cond_broadcast cond_broadcast
-#define _init_completion init_completion
-#define _wait_for_completion wait_for_completion
-#define _complete complete
-#define _complete_all complete_all
-#define _rwlock_init rwlock_init
-#define _read_lock read_lock
-#define _read_trylock read_trylock
-#define _read_unlock read_unlock
-#define _write_lock write_lock
-#define _write_trylock write_trylock
-#define _write_unlock write_unlock
 
 #endif

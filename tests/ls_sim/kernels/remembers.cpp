@@ -1,5 +1,5 @@
-// Writes back how often it has run since its image was loaded, by data (restored for every run) and by bss
-// (not).
+// Counts its runs in data and in bss, and writes both counts back: a program's run begins with both as they
+// are in the image, a job's with its data.
 #include <spu_intrinsics.h>
 #include <spu_mfcio.h>
 

@@ -852,6 +852,24 @@ TEST(Attachments, ThingsThatVanishTakeTheirAttachmentsWithThem) {
   w.run(2);
 }
 
+/// Its attachments refer to particles that the body no longer has. Those made after the assignment stay.
+TEST(Attachments, EndWhenABodyOfAnotherModelIsAssigned) {
+  ContactWorld w;
+  SoftBody<3>& body = w.add(block({0.3f, 0.3f, 0.3f}), settings_of(kCell), {0, 0, 0});
+  const auto other = make_soft_body_model(block({0.2f, 0.2f, 0.2f}), settings_of(kCell));
+  const AttachmentId before = w.bodies.attach(body, Patch<3>::of_surface({0, 0.15f, 0}, 0.1f));
+  w.run(1);
+  EXPECT_TRUE(w.bodies.attachment(before));
+  body = SoftBody<3>(other, {0, 0, 0});
+  const AttachmentId after = w.bodies.attach(body, Patch<3>::of_surface({0, 0.1f, 0}, 0.1f));
+  w.run(1);
+  EXPECT_FALSE(w.bodies.attachment(before));
+  EXPECT_TRUE(w.bodies.attachment(after));
+  const auto ended = w.bodies.poll_ended_attachments();
+  ASSERT_EQ(ended.size(), 1u);
+  EXPECT_EQ(ended[0].id, before);
+}
+
 /// The sentence of what is refused, or nothing.
 template <typename Work>
 std::string refusal(const Work& work) {

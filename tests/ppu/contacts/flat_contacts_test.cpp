@@ -866,6 +866,30 @@ TEST_P(FlatContacts, TheSidesOfACrackTouchEachOther) {
 INSTANTIATE_TEST_SUITE_P(Workers, FlatContacts, testing::Bool(),
                          [](const auto& worker) { return worker.param ? "Spes" : "Ppu"; });
 
+TEST(FlatContacts, CrushedCellsAreCounted) {
+  struct Squashed {
+    float height;  ///< of that at rest
+    std::size_t crushed, inside_out;
+  };
+  for (const ContactMethod method : {ContactMethod::kSurface, ContactMethod::kSpheres}) {
+    World2d world(0, method);
+    SoftBody<2>& body = world.soft.add(rectangle_model({4, 3}, calm(0.1f)), {0, 5});
+    world.soft.add(rectangle_model({2, 2}, calm(0.1f)), {5, 5});
+    const std::vector<Vector2f> still(body.positions().size(), Vector2f::Zero());
+    for (const Squashed& wanted :
+         {Squashed{1, 0, 0}, Squashed{0.6f, 0, 0}, Squashed{0.4f, 12, 0}, Squashed{-0.8f, 12, 12}}) {
+      std::vector<Vector2f> squashed;
+      for (std::size_t i = 0; i < still.size(); ++i)
+        squashed.push_back(body.model().lattice().rest_position(i).cwiseProduct(Vector2f(1, wanted.height)));
+      body.set_state(squashed, still);
+      const CrushedCellCount found = world.soft.crushed_cells();
+      const bool counts = method == ContactMethod::kSurface;
+      EXPECT_EQ(found.crushed, counts ? wanted.crushed : 0) << wanted.height;
+      EXPECT_EQ(found.inside_out, counts ? wanted.inside_out : 0) << wanted.height;
+    }
+  }
+}
+
 TEST(FlatContacts, TheSameBitsForAnyNumberOfSpesAndSchedule) {
   const auto fall = [](SpeRuntime& spes) {
     World2d w(9.81f, ContactMethod::kSurface, spes);

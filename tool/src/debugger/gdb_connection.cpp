@@ -98,7 +98,7 @@ bool GdbConnection::read_some(int milliseconds) {
 }
 
 /// Skips acknowledgements and broken packets. It reports broken packets to the debugger, which sends them again.
-std::optional<std::string> GdbConnection::take_packet() {
+std::optional<std::string> GdbConnection::extract_packet() {
   for (;;) {
     const std::size_t begin = received_.find('$');
     if (begin == std::string::npos) return std::nullopt;
@@ -115,12 +115,12 @@ std::optional<std::string> GdbConnection::take_packet() {
 }
 
 std::optional<std::string> GdbConnection::receive() {
-  if (auto packet = take_packet()) return packet;
+  if (auto packet = extract_packet()) return packet;
   read_some(kMomentMilliseconds);
-  return take_packet();
+  return extract_packet();
 }
 
-bool GdbConnection::take_interrupt() {
+bool GdbConnection::poll_interrupt() {
   read_some(0);
   const std::size_t at = received_.find(kInterrupt);
   if (at == std::string::npos) return is_closed_;  // there is nobody to wait for

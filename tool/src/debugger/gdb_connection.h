@@ -27,7 +27,7 @@ class GdbConnection {
   /// @return  its contents, unescaped; none if no packet has come yet.
   std::optional<std::string> receive();
   /// @return  whether the debugger has sent its byte 3, which asks for a stop, since the last call.
-  bool take_interrupt();
+  bool poll_interrupt();
   void send(std::string_view contents);
 
   /// Call it when the debugger no longer wants acknowledgements.
@@ -36,7 +36,7 @@ class GdbConnection {
 
  private:
   bool read_some(int milliseconds);
-  std::optional<std::string> take_packet();
+  std::optional<std::string> extract_packet();
 
   int listener_ = -1, socket_ = -1;
   std::uint16_t port_ = 0;

@@ -92,7 +92,7 @@ GdbServer::End GdbServer::serve(const DebugSession::Interrupted& interrupted) {
 }
 
 DebugSession::Interrupted GdbServer::interrupted() const {
-  return [this] { return connection_.take_interrupt() || wants_end_(); };
+  return [this] { return connection_.poll_interrupt() || wants_end_(); };
 }
 
 std::string GdbServer::answer(const std::string& packet) {
@@ -291,12 +291,14 @@ std::string GdbServer::resume(std::string_view action) {
   }
   spe_ = stop_.spe;
   if (stop_.kind == DebugStop::kFault)
-    for (const std::string& sentence : session_.failures()) say(sentence);
+    for (const std::string& sentence : session_.failures()) print_in_debugger(sentence);
   return report(stop_);
 }
 
 /// Shows a sentence in the debugger's window.
-void GdbServer::say(const std::string& sentence) { connection_.send("O" + hexadecimal_of(sentence + "\n")); }
+void GdbServer::print_in_debugger(const std::string& sentence) {
+  connection_.send("O" + hexadecimal_of(sentence + "\n"));
+}
 
 std::string GdbServer::report(const DebugStop& stop) {
   constexpr int kTrapSignal = 5, kInterruptSignal = 2, kFaultSignal = 6;

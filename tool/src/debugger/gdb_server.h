@@ -39,7 +39,7 @@ class GdbServer {
   std::string write_memory(std::string_view text, bool is_binary);
   std::string change_point(std::string_view packet);
   std::string resume(std::string_view action);
-  void say(const std::string& sentence);
+  void print_in_debugger(const std::string& sentence);
   std::string report(const DebugStop& stop);
   std::string bytes_of_register(int number) const;
   DebugSession::Interrupted interrupted() const;

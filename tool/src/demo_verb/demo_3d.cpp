@@ -54,7 +54,7 @@ class Demo3d final : public demos::SceneDemo<Types3d> {
                    .knife = demos::knife_3d([this](const demos::Look& look) { return eye(look); },
                                             options.size.width, options.size.height),
                    .hand = demos::MouseReach([this](const demos::Look& look) { return eye(look); },
-                                             [this](const demos::Ray& ray) { return take(ray); },
+                                             [this](const demos::Ray& ray) { return grab(ray); },
                                              options.size.width, options.size.height),
                    .camera = demos::CameraControl(scene.camera, options.size.height)}),
         options_(options) {}
@@ -152,8 +152,8 @@ class Demo3d final : public demos::SceneDemo<Types3d> {
 
   bool shows_contacts() const { return static_cast<demos::View>(look().view) == demos::View::kContacts; }
 
-  /// What the mouse takes along a ray. A click on the point of a contact, while contacts are shown, selects the contact and takes nothing.
-  std::optional<demos::InputEvent<3>> take(const demos::Ray& ray) {
+  /// What the mouse grabs along a ray. A click on the point of a contact, while contacts are shown, selects the contact and grabs nothing.
+  std::optional<demos::InputEvent<3>> grab(const demos::Ray& ray) {
     contact_ = shows_contacts() ? contact_at(ray) : std::nullopt;
     return contact_ ? std::nullopt : simulation().touch(ray);
   }

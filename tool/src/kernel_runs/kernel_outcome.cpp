@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kWordBytes = 4;
 
-std::string place_and_rule(const dma::Fault& fault) {
+std::string location_and_rule(const dma::Fault& fault) {
   return fmt::format("{} {}", fault.place.empty() ? fault.kernel : fault.place, dma::name(fault.rule));
 }
 
@@ -57,10 +57,10 @@ void compare_buffers(const KernelOutcome::Contents& first, const KernelOutcome::
 KernelOutcome outcome(const KernelRun& run, const KernelBuffers& buffers) {
   KernelOutcome result;
   for (const SpeRun& spe : run.spes) {
-    result.ends.push_back(spe.result.fault ? place_and_rule(*spe.result.fault) : describe_end(spe));
+    result.ends.push_back(spe.result.fault ? location_and_rule(*spe.result.fault) : describe_end(spe));
   }
   for (const ls_sim::Finding& finding : run.findings)
-    result.findings.push_back(place_and_rule(finding.fault));
+    result.findings.push_back(location_and_rule(finding.fault));
   for (const KernelBuffers::Slot& slot : buffers.slots()) {
     if (slot.spec->direction == BufferSpec::kIn) continue;
     const auto bytes = slot.memory.span();

@@ -120,22 +120,22 @@ std::filesystem::path file_of_trace(const std::filesystem::path& file, std::size
   return other;
 }
 
-/// A device, a pipe and standard output take one trace.
-bool takes_all_traces(const std::filesystem::path& file) {
+/// Devices, pipes and standard output hold only one trace.
+bool holds_all_traces(const std::filesystem::path& file) {
   std::error_code ignored;
   const auto status = std::filesystem::status(file, ignored);
   return file != kStandardOutput && (!exists(status) || is_regular_file(status));
 }
 
-/// Says which process each trace is of.
-void say_whose_traces(const std::filesystem::path& file, const ProgramRun& run) {
+/// Prints which process each trace is of.
+void report_traces(const std::filesystem::path& file, const ProgramRun& run) {
   const std::size_t traces = run.traces.size();
   if (traces < run.processes)
     fmt::print(stderr, "softcell: {} of {} processes {} ended before {} wrote a trace\n",
                run.processes - traces, run.processes, run.processes - traces == 1 ? "has" : "have",
                run.processes - traces == 1 ? "it" : "they");
   if (traces < 2) return;
-  if (!takes_all_traces(file)) {
+  if (!holds_all_traces(file)) {
     fmt::print(stderr,
                "softcell: {} has the trace of the first of {} processes; give --trace a file, and each has "
                "its own\n",
@@ -150,7 +150,7 @@ void say_whose_traces(const std::filesystem::path& file, const ProgramRun& run) 
 /// Writes the traces of all processes but the first, each into a file of its own beside that of the first.
 /// @throws UsageError  one of them would replace another file of the run.
 void write_other_traces(const RunOptions& options, const ProgramRun& run) {
-  if (!takes_all_traces(*options.trace)) return;
+  if (!holds_all_traces(*options.trace)) return;
   base::WholeFiles files;
   for (std::size_t number = 2; number <= run.traces.size(); ++number) {
     const auto file = file_of_trace(*options.trace, number);
@@ -177,7 +177,7 @@ int run_one(const RunOptions& options, const InterruptGuard& guard, Output& json
   if (has_trace) {
     trace.files.commit();
     write_other_traces(options, run);
-    say_whose_traces(*options.trace, run);
+    report_traces(*options.trace, run);
   }
   const int status = run.exit_status();
   if (!lacks_trace || status != 0) return status;

@@ -78,8 +78,8 @@ Words without_dependencies(const Words& options) {
   return words;
 }
 
-/// Takes the folders of -isystem out of the words.
-Words take_system_folders(Words& words) {
+/// Removes the folders of -isystem from the words and returns them.
+Words extract_system_folders(Words& words) {
   constexpr std::string_view kOption = "-isystem";
   Words folders, others;
   for (std::size_t i = 0; i < words.size(); ++i) {
@@ -95,7 +95,7 @@ Words take_system_folders(Words& words) {
   return folders;
 }
 
-void say(const Options& options, const Words& command) {
+void print_command(const Options& options, const Words& command) {
   if (!options.verbose) return;
   std::string text;
   for (const std::string& word : command) text += " " + word;
@@ -107,7 +107,7 @@ void compile_build(const Input& source, const std::filesystem::path& object, boo
                    ScratchFolder& scratch) {
   // The compiler's messages are only printed for one build.
   const auto go = [&](const Words& command) {
-    say(options, command);
+    print_command(options, command);
     if (source.file == kStandardInput) lseek(STDIN_FILENO, 0, SEEK_SET);
     if (const int status = run(command, checked); status != 0) throw Failed{status};
   };
@@ -120,7 +120,7 @@ void compile_build(const Input& source, const std::filesystem::path& object, boo
   }
   // A program's own system headers are rewritten as its other ones are. softcell's headers stay as they are.
   Words words = preprocessor;
-  const Words system_folders = take_system_folders(words);
+  const Words system_folders = extract_system_folders(words);
   append(command, words);
   for (const std::string& folder : system_folders) append(command, {"-I", folder});
   append(command, options.compiler);
@@ -141,7 +141,7 @@ void compile_build(const Input& source, const std::filesystem::path& object, boo
 
 }  // namespace
 
-void keep_standard_input(const Options& options, ScratchFolder& scratch) {
+void save_standard_input(const Options& options, ScratchFolder& scratch) {
   const bool is_read = std::ranges::any_of(
       options.inputs, [](const Input& input) { return input.file == kStandardInput && input.language; });
   if (!is_read) return;

@@ -15,7 +15,7 @@ namespace softcell::toolchain {
 inline constexpr const char kCheckedSection[] = ".softcell.checked";
 
 /// Standard input is read once; both builds are compiled from what was read. Call it before compile().
-void keep_standard_input(const Options& options, ScratchFolder& scratch);
+void save_standard_input(const Options& options, ScratchFolder& scratch);
 
 /// Compiles one source. @param dependent  what the dependencies of -MD are of: the object, or the program of which it becomes a part.
 /// @throws Failed  the compiler has printed why.

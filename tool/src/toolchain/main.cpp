@@ -68,14 +68,14 @@ int link_inputs(const Words& files, const Options& options, const Places& places
 int gcc(const std::string& command, const Words& words, Language language) {
   if (answer_question(words)) return 0;
   const Options options = parse_compiler_options(words, language);
-  note_meaningless(command, options);
+  report_meaningless(command, options);
   const Places places = find_places();
   if (options.step == Step::kDependencies || options.step == Step::kPreprocess) {
     preprocess(options, places);
     return 0;
   }
   ScratchFolder scratch;
-  keep_standard_input(options, scratch);
+  save_standard_input(options, scratch);
   Words files;
   Dependencies dependencies;
   for (const Input& input : options.inputs) {
@@ -103,7 +103,7 @@ int gcc(const std::string& command, const Words& words, Language language) {
 int ld(const std::string& command, const Words& words) {
   if (answer_question(words)) return 0;
   const Options options = parse_linker_options(words);
-  note_meaningless(command, options);
+  report_meaningless(command, options);
   Words files;
   for (const Input& input : options.inputs) files.push_back(input.file);
   ScratchFolder scratch;
@@ -138,7 +138,7 @@ int run_command(const std::string& command, Words words) {
 
 int main(int argc, char** argv) {
   const std::string command = std::filesystem::path(argv[0]).filename();
-  note_signals();
+  catch_signals();
   try {
     return run_command(command, Words(argv + 1, argv + argc));
   } catch (const Ended& ended) {

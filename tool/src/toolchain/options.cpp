@@ -85,12 +85,12 @@ class Parser {
   Parser(const Words& words, Language language) : words_(with_files_expanded(words)), language_(language) {}
 
   Options compiler_options() {
-    for (; at_ < words_.size(); ++at_) take_compiler_word(words_[at_]);
+    for (; at_ < words_.size(); ++at_) parse_compiler_option(words_[at_]);
     finish();
     return std::move(options_);
   }
   Options linker_options() {
-    for (; at_ < words_.size(); ++at_) take_linker_word(words_[at_]);
+    for (; at_ < words_.size(); ++at_) parse_linker_option(words_[at_]);
     finish();
     return std::move(options_);
   }
@@ -102,16 +102,16 @@ class Parser {
     if (++at_ == words_.size()) throw std::invalid_argument(std::string(option) + " needs a value");
     return words_[at_];
   }
-  void keep_with_value(Words& to, const std::string& word, std::string_view option) {
+  void add_with_value(Words& to, const std::string& word, std::string_view option) {
     to.push_back(word);
     if (word == option) to.push_back(value(word, option));
   }
 
-  void take_compiler_word(const std::string& word) {
-    if (word == "-" || !word.starts_with('-')) return take_input(word);
+  void parse_compiler_option(const std::string& word) {
+    if (word == "-" || !word.starts_with('-')) return add_input(word);
     for (const std::string_view option : {"-isystem", "-iquote", "-idirafter", "-include", "-imacros", "-I",
                                           "-D", "-U", "-MF", "-MT", "-MQ"}) {
-      if (word.starts_with(option)) return keep_with_value(options_.preprocessor, word, option);
+      if (word.starts_with(option)) return add_with_value(options_.preprocessor, word, option);
     }
     if (is_any(word, "-MD", "-MMD", "-MP", "-MG", "-C", "-P", "-undef"))
       return options_.preprocessor.push_back(word);
@@ -122,7 +122,7 @@ class Parser {
     if (word.starts_with("-o")) {
       options_.output = value(word, "-o");
     } else if (word.starts_with("-x")) {
-      take_language(value(word, "-x"));
+      set_language(value(word, "-x"));
     } else if (word == "-c") {
       options_.step = std::min(options_.step, Step::kCompile);
     } else if (word == "-E") {
@@ -136,11 +136,11 @@ class Parser {
           "-S: there are no SPU instructions here, the program runs on the PC's processor; a real spu-gcc "
           "writes them");
     } else if (starts_with_any(word, "-l", "-L")) {
-      take_library(word);
+      add_library(word);
     } else if (word.starts_with("-Wl,")) {
-      take_linker_list(word.substr(4));
+      parse_linker_list(word.substr(4));
     } else if (word == "-Xlinker") {
-      take_linker_list(value(word, "-Xlinker"));
+      parse_linker_list(value(word, "-Xlinker"));
     } else if (word == "-T" || word == "-Xassembler" || word == "-Xpreprocessor" || word == "--param") {
       options_.meaningless.push_back(word + " " + value(word, word));
     } else if (word == "-r") {
@@ -148,7 +148,7 @@ class Parser {
     } else if (word == "-v" || word == "-###") {
       options_.verbose = true;
     } else if (word.starts_with("-std=")) {
-      take_standard(word);
+      set_standard(word);
     } else if (word == "-ansi") {
       if (language_ == Language::kC) options_.compiler.push_back("-std=gnu90");
       options_.cxx_standard = "-std=c++17";
@@ -183,12 +183,12 @@ class Parser {
            starts_with_any(word, "-fpack-struct", "-fmax-errors", "-fdiagnostics", "-ftemplate-depth");
   }
 
-  void take_linker_word(const std::string& word) {
-    if (!word.starts_with('-')) return take_input(word);
+  void parse_linker_option(const std::string& word) {
+    if (!word.starts_with('-')) return add_input(word);
     if (word.starts_with("-o")) {
       options_.output = value(word, "-o");
     } else if (starts_with_any(word, "-l", "-L")) {
-      take_library(word);
+      add_library(word);
     } else if (is_any(word, "-r", "-i", "--relocatable")) {
       options_.relocatable = true;
     } else if (word.starts_with("-Map=") || is_any(word, "-M", "--print-map", "--trace", "-t", "--verbose")) {
@@ -196,7 +196,7 @@ class Parser {
     } else if (word == "-Map") {
       options_.linker.insert(options_.linker.end(), {word, value(word, word)});
     } else if (word == "-z") {
-      take_keyword(value(word, word));
+      parse_linker_keyword(value(word, word));
     } else if (word.starts_with("--defsym=")) {
       options_.linker.push_back(word);
     } else if (is_ignored_with_value(word)) {
@@ -208,20 +208,20 @@ class Parser {
     }
   }
 
-  /// Takes linker options that are separated by commas; some use the next word as their value.
-  void take_linker_list(std::string_view list) {
+  /// Parses linker options that are separated by commas; some use the next word as their value.
+  void parse_linker_list(std::string_view list) {
     for (std::size_t at = 0; at <= list.size();) {
       const auto comma = std::min(list.find(',', at), list.size());
       passed_on_.emplace_back(list.substr(at, comma - at));
       at = comma + 1;
     }
     // The value may come with the next -Xlinker or -Wl.
-    if (!needs_linker_value(passed_on_.back())) take_passed_on();
+    if (!needs_linker_value(passed_on_.back())) parse_passed_on();
   }
-  void take_passed_on() {
+  void parse_passed_on() {
     const Words outer = std::exchange(words_, std::exchange(passed_on_, {}));
     const std::size_t outer_at = std::exchange(at_, 0);
-    for (; at_ < words_.size(); ++at_) take_linker_word(words_[at_]);
+    for (; at_ < words_.size(); ++at_) parse_linker_option(words_[at_]);
     words_ = outer;
     at_ = outer_at;
   }
@@ -232,7 +232,7 @@ class Parser {
     return is_any(word, "-e", "-T", "-m", "-u", "-h", "-Ttext", "-Tdata", "-Tbss", "--script", "--entry");
   }
 
-  void take_keyword(const std::string& keyword) {
+  void parse_linker_keyword(const std::string& keyword) {
     constexpr std::string_view kStack = "stack-size=";
     if (!keyword.starts_with(kStack)) return options_.meaningless.push_back("-z " + keyword);
     const std::string number = keyword.substr(kStack.size());
@@ -244,13 +244,13 @@ class Parser {
     options_.stack_bytes = static_cast<std::uint32_t>((bytes + 15) / 16 * 16);
   }
 
-  void take_language(const std::string& name) {
+  void set_language(const std::string& name) {
     forced_ = language_by_name(name);
     if (!forced_ && name != "none")
       throw std::invalid_argument("-x " + name + ": only C and C++ can be compiled here");
   }
 
-  void take_standard(const std::string& word) {
+  void set_standard(const std::string& word) {
     // The headers of the SPU are C++17.
     constexpr std::array kOld{"98", "03", "0x", "11", "1y", "14", "1z"};
     if (word.find("++") == word.npos) {
@@ -264,7 +264,7 @@ class Parser {
     }
   }
 
-  void take_input(const std::string& file) {
+  void add_input(const std::string& file) {
     std::optional<Language> language = forced_;
     const std::string extension = std::filesystem::path(file).extension();
     if (!language && file != "-") {
@@ -284,13 +284,13 @@ class Parser {
     options_.inputs.push_back({file, language});
   }
 
-  void take_library(const std::string& word) {
+  void add_library(const std::string& word) {
     if (word.starts_with("-L")) return folders_.push_back(value(word, "-L"));
     libraries_.push_back({value(word, "-l"), options_.inputs.size()});
   }
 
   void finish() {
-    take_passed_on();
+    parse_passed_on();
     // From the last to the first, so that the positions of the others do not change.
     for (auto library = libraries_.rbegin(); library != libraries_.rend(); ++library) {
       const auto& [name, place] = *library;
@@ -348,7 +348,7 @@ Options parse_compiler_options(const Words& words, Language language) {
 
 Options parse_linker_options(const Words& words) { return Parser(words, Language::kC).linker_options(); }
 
-void note_meaningless(const std::string& command, const Options& options) {
+void report_meaningless(const std::string& command, const Options& options) {
   if (std::getenv("SOFTCELL_QUIET") != nullptr) return;
   for (const std::string& note : options.notes)
     std::fprintf(stderr, "%s: note: %s\n", command.c_str(), note.c_str());

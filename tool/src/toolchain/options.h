@@ -46,6 +46,6 @@ Options parse_compiler_options(const Words& words, Language language);
 Options parse_linker_options(const Words& words);
 
 /// Prints once which options have no meaning or cannot be followed, unless SOFTCELL_QUIET is set.
-void note_meaningless(const std::string& command, const Options& options);
+void report_meaningless(const std::string& command, const Options& options);
 
 }  // namespace softcell::toolchain

@@ -33,22 +33,22 @@ pid_t spawn(const Words& command, posix_spawn_file_actions_t& actions) {
   return child;
 }
 
-volatile std::sig_atomic_t noted = 0;
+volatile std::sig_atomic_t caught = 0;
 
 int status_of(pid_t child) {
   int status = 0;
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
-    if (noted != 0) kill(child, SIGTERM);
+    if (caught != 0) kill(child, SIGTERM);
   }
-  if (noted != 0) throw Ended{noted};
+  if (caught != 0) throw Ended{caught};
   return WIFEXITED(status) ? WEXITSTATUS(status) : 1;
 }
 
 }  // namespace
 
-void note_signals() {
+void catch_signals() {
   struct sigaction action {};
-  action.sa_handler = [](int signal) { noted = signal; };
+  action.sa_handler = [](int signal) { caught = signal; };
   sigemptyset(&action.sa_mask);
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) {
     struct sigaction present {};

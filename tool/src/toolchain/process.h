@@ -18,9 +18,9 @@ struct Ended {
 
 /// From here on Ctrl-C, SIGTERM and their like end the program that is run, and are thrown as Ended when it has ended, so that no temporary
 /// file is left. A signal that is ignored stays so.
-void note_signals();
+void catch_signals();
 
-/// Ends this process as the signal would have done. @pre  note_signals() was called
+/// Ends this process as the signal would have done. @pre  catch_signals() was called
 [[noreturn]] void end_by(int signal);
 
 /// Runs a program and waits for its end. It shares our standard input, output and error.

@@ -12,14 +12,14 @@ volatile std::sig_atomic_t signalled = 0;
 constexpr std::array kSignals{SIGINT, SIGTERM, SIGHUP};
 std::array<struct sigaction, kSignals.size()> previous;
 
-void note(int) { signalled = 1; }
+void on_signal(int) { signalled = 1; }
 
 }  // namespace
 
 InterruptGuard::InterruptGuard() {
   signalled = 0;
   struct sigaction action {};
-  action.sa_handler = note;
+  action.sa_handler = on_signal;
   sigemptyset(&action.sa_mask);
   for (std::size_t i = 0; i < kSignals.size(); ++i) {
     sigaction(kSignals[i], &action, &previous[i]);

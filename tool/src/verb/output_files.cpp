@@ -21,12 +21,12 @@ namespace {
 constexpr const char* kCalled = "standard output";
 
 /// Returns a descriptor of the present standard output, and redirects standard output to standard error.
-int take_standard_output() {
+int redirect_standard_output() {
   std::fflush(stdout);
-  const int taken = ::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
-  if (taken < 0 || ::dup2(STDERR_FILENO, STDOUT_FILENO) < 0)
+  const int original = ::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
+  if (original < 0 || ::dup2(STDERR_FILENO, STDOUT_FILENO) < 0)
     throw std::runtime_error(fmt::format("cannot write {}: {}", kCalled, std::strerror(errno)));
-  return taken;
+  return original;
 }
 
 }  // namespace
@@ -35,7 +35,7 @@ OutputFiles::OutputFiles(const std::vector<NamedFile>& files) {
   check_distinct(files);
   const bool wanted =
       std::ranges::any_of(files, [](const NamedFile& file) { return file.file == kStandardOutput; });
-  if (wanted) standard_output_ = take_standard_output();
+  if (wanted) standard_output_ = redirect_standard_output();
 }
 
 base::WholeFile& OutputFiles::open(const std::filesystem::path& file) {

@@ -147,7 +147,7 @@ class AddressSpace {
   EffectiveAddress local_store_ea(int spe) const;
 
   /// The host address at which this SPE's local store must lie; null: anywhere.
-  std::byte* place_of_local_store(int spe) const;
+  std::byte* host_address_of_local_store(int spe) const;
 
   /// Maps an SPE at local_store_ea(spe): its local store for any access, and its registers Sig_Notify_1,
   /// Sig_Notify_2 and SPU_In_Mbox for writes of 4 bytes. Every write that goes through reservations() calls

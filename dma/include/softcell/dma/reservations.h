@@ -93,7 +93,7 @@ class Reservations {
              std::uint32_t bytes);
 
   /// Ends the holder's reservation, if it has one, without an event.
-  void give_up(ReservationHolder& holder);
+  void release(ReservationHolder& holder);
 
   /// In the memory of a host program: if the line has changed since it was reserved, ends the holder's reservation and calls its listener.
   /// @throws StorageLost

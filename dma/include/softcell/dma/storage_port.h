@@ -120,7 +120,7 @@ class StoragePort {
   void load_and_reserve(const StoragePlace& line, std::byte* to);
   bool store_conditional(const StoragePlace& line, const std::byte* from);
   void store_line(const StoragePlace& line, const std::byte* from);
-  void give_up_reservation() { reservations_.give_up(holder_); }
+  void release_reservation() { reservations_.release(holder_); }
   /// Reservations::look_for_host_stores().
   void look_for_host_stores() { reservations_.look_for_host_stores(holder_); }
   bool may_miss_host_stores() const { return reservations_.may_miss_host_stores(holder_); }

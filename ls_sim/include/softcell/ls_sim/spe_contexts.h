@@ -69,7 +69,7 @@ class SpeContext {
 
   /// Ends a run that has stopped and could continue; its statistics are counted then.
   /// @throws std::logic_error  the context runs.
-  virtual void give_up() = 0;
+  virtual void end_run() = 0;
 
   /// Ends the run in progress with the fault deadline-exceeded.
   virtual void interrupt() = 0;

@@ -41,7 +41,6 @@ struct SpeOptions {
   Clock clock = Clock::kHost;
   Interleaving interleaving = Interleaving::kFree;
   bool measure_stack = false;  ///< scan the stack after each run
-  bool reload_always = false;  ///< copy the image before every run, so that bss starts as zero
   /// Checked images report their findings here; images that are not checked are refused then. Null: nothing is checked. It must outlive the
   /// SPEs.
   Findings* findings = nullptr;

@@ -12,11 +12,15 @@
 //
 //     step:  [solver: v] [contacts: v, x += h v, impulses on rigid bodies] [Box2D: rigid bodies]
 //
+// The thread that steps the world does this work, unless the constructor gets an SpeRuntime (spe_bodies/spe_runtime.h): then the SPEs do it.
+//
 // With ContactMethod::kSpheres, the method of 2008, each outer particle is a b2Body: a circle that cannot rotate (a rolling one would have
 // no friction). It collides with everything in the world except its own body. Box2D moves the circles; softcell never writes their
 // positions. softcell integrates the inner particles, which nothing can touch.
 //
 //     step:  [solver: v] [Box2D: collide, solve, x += h v] [gather x v, inner x += h v]
+//
+// To draw a body: soft_bodies/skin_2d.h.
 
 #include <box2d/b2_world.h>
 
@@ -74,16 +78,17 @@ class Box2dSoftBodies {
   /// from passing through walls that do not move.
   static constexpr float kMaxTravelInCells = 1.0f;
 
-  /// The thread that steps the world does the shape matching. @param world  must outlive this object.
+  /// @param world  must outlive this object.
   explicit Box2dSoftBodies(b2World& world, ContactMethod contacts = ContactMethod::kSurface);
-  /// @param solvers  makes the solver that does the shape matching: with an SpeRuntime the SPEs do it. Must outlive this object.
+  /// @param solvers  makes the solver for these bodies; must outlive this object. Usually an SpeRuntime.
+  /// @throws std::runtime_error  as SolverFactory::make_solver().
   Box2dSoftBodies(b2World& world, SolverFactory& solvers, ContactMethod contacts = ContactMethod::kSurface);
-  /// @param solver  does the shape matching; an SpeSolver<2> does it on SPEs. It must outlive this object, and serve no other object.
+  /// @param solver  must outlive this object, and serve no other object.
   /// @param worker  for ContactMethod::kSurface: finds and solves contacts if there are many, as SolverFactory makes it; null: the
   ///                thread that steps the world does it
   Box2dSoftBodies(b2World& world, SoftBodySolver<2>& solver, ContactMethod contacts = ContactMethod::kSurface,
                   std::shared_ptr<ContactWorker> worker = nullptr);
-  /// Removes all bodies.
+  /// Removes all bodies and leaves the world as it was found.
   ~Box2dSoftBodies();
   Box2dSoftBodies(const Box2dSoftBodies&) = delete;
   Box2dSoftBodies& operator=(const Box2dSoftBodies&) = delete;
@@ -139,7 +144,7 @@ class Box2dSoftBodies {
   /// Cuts a body as it is now, whether it has a fracture or not (soft_bodies/fracture.h). The body becomes its largest piece and wakes.
   ///
   /// An attachment continues with the piece that has all particles of its patch, each of them once; if no piece has, it ends. New bodies
-  /// follow all others in operator[]. With ContactMethod::kSpheres the body gets new b2Bodies; joints of its old ones end. Circles of two
+  /// have the collision filter of the body and follow all others in operator[]. With ContactMethod::kSpheres the body gets new b2Bodies; joints of its old ones end. Circles of two
   /// pieces that overlap do not collide until they have been apart; softcell installs a contact filter for that, as attach() does.
   /// @return the other pieces that stay (Fracture::least_cells); valid until remove()
   /// @throws std::invalid_argument  the body is not one of these; the cut is not finite or has no length.
@@ -157,10 +162,6 @@ class Box2dSoftBodies {
   /// Whether the body is still whole and will break into pieces. Assigning to the body, or resetting its shape, prevents that.
   /// @throws std::invalid_argument  the body is not one of these
   bool is_breaking(const SoftBody<2>& body) const;
-
-  /// Sets what a body may touch: fixtures, whose category and mask bits count, and other soft bodies. The body wakes.
-  /// @throws std::invalid_argument  the body is not one of these
-  void set_filter(const SoftBody<2>& body, const CollisionFilter& filter);
 
   /// One step of the world and its soft bodies.
   /// @param step  seconds, the same in every step: a body's stiffness depends on it unless its settings have a frequency, and a step much
@@ -195,19 +196,14 @@ class Box2dSoftBodies {
   /// @throws std::invalid_argument  a setting is out of its range
   void let_sleep(const std::optional<SleepSettings>& settings);
 
-  std::size_t size() const;  ///< number of soft bodies
-  /// The bodies in the order of add(). @throws std::out_of_range  there are not so many
-  SoftBody<2>& operator[](std::size_t index);
-  /// The same.
-  const SoftBody<2>& operator[](std::size_t index) const;
+  /// Appends the contacts at which soft bodies that touch with their drawn edges pressed on something in the last step.
+  /// Contacts of circles are in Box2D's own list.
+  void append_contacts(std::vector<Contact2d>& contacts) const;
 
-  /// A particle of one of the soft bodies.
-  struct Particle {
-    const SoftBody<2>* body = nullptr;  ///< null: no particle
-    std::size_t number = 0;             ///< of the particle in its body
-  };
-  /// For contact listeners, with ContactMethod::kSpheres: the particle that a b2Body stands for. For other b2Bodies the result has no body.
-  Particle particle_of(const b2Body& body) const;
+  /// Sets what a body may touch: fixtures, whose category and mask bits count, and other soft bodies; without a call it may touch all groups.
+  /// The body wakes, and so do bodies that may lie on it.
+  /// @throws std::invalid_argument  the body is not one of these.
+  void set_filter(const SoftBody<2>& body, const CollisionFilter& filter);
 
   /// Switches contact events on or off for bodies that touch with their drawn edges. They are off by default and cost nothing then. For
   /// circles use one of Box2D's listeners.
@@ -226,12 +222,27 @@ class Box2dSoftBodies {
   std::optional<SoftRayHit2d> cast_ray(const Eigen::Vector2f& from, const Eigen::Vector2f& to,
                                        const CollisionFilter& filter = {}) const;
 
-  /// Appends the contacts at which soft bodies that touch with their drawn edges pressed on something in the last step.
-  /// Contacts of circles are in Box2D's own list.
-  void append_contacts(std::vector<Contact2d>& contacts) const;
-
   /// The time that these bodies have taken inside step(), begin_step(), end_step() and begin_ahead().
   SoftBodyTimes times() const;
+
+  /// Counts the crushed cells of the bodies that touch with their drawn edges. Each call looks at all of their cells as they are now.
+  /// softcell keeps crushed cells from being pressed further and pushes them back. If there are many for long, a body is
+  /// too soft or too light for what lies on it.
+  CrushedCellCount crushed_cells() const;
+
+  std::size_t size() const;  ///< number of soft bodies
+  /// The bodies in the order of add(). @throws std::out_of_range  there are not so many
+  SoftBody<2>& operator[](std::size_t index);
+  /// The same.
+  const SoftBody<2>& operator[](std::size_t index) const;
+
+  /// A particle of one of the soft bodies.
+  struct Particle {
+    const SoftBody<2>* body = nullptr;  ///< null: no particle
+    std::size_t number = 0;             ///< of the particle in its body
+  };
+  /// For contact listeners, with ContactMethod::kSpheres: the particle that a b2Body stands for. For other b2Bodies the result has no body.
+  Particle particle_of(const b2Body& body) const;
 
  private:
   struct Impl;

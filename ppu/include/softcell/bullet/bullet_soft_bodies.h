@@ -92,7 +92,8 @@ class BulletSoftBodies {
   BulletSoftBodies& operator=(const BulletSoftBodies&) = delete;
 
   /// Adds a body at rest, its model's origin at `position` (metres). The reference is valid until remove(). Between steps you
-  /// may change the body through its own functions; the next substep sees the change.
+  /// may change the body through its own functions; the next substep sees the change. When a body of another model is
+  /// assigned to it, its attachments end.
   /// @throws std::invalid_argument  the model is null, or its bodies break (SoftBodySettings::fracture), which bodies that touch with
   /// spheres cannot.
   /// @pre the position is finite

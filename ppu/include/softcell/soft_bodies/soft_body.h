@@ -197,8 +197,8 @@ class SoftBody {
   struct RestShape;
   void set_rest(std::unique_ptr<RestShape> rest);
   std::unique_ptr<RestShape> rest_of(std::span<const Vector> positions) const;
-  void take_rest(std::unique_ptr<RestShape> rest);
-  void take_flow();
+  void adopt_rest(std::unique_ptr<RestShape> rest);
+  void read_flow();
 
   std::shared_ptr<const SoftBodyModel<kDimension>> model_;
   SoftBodySettings settings_;

@@ -87,12 +87,12 @@ class SpeSolver final : public SoftBodySolver<kDimension> {
   void find_place(Group& group, Known& known);
   Plans plans_of(const std::shared_ptr<const SoftBodyModel<kDimension>>& model) const;
   Place place_for(const std::shared_ptr<const Plans>& plans) const;
-  void take_prepared(Known& known, std::span<Body* const> bodies);
-  void take_over(Member& member, Member& old);
-  void hand_over(Member& member);
+  void adopt_prepared(Known& known, std::span<Body* const> bodies);
+  void adopt(Member& member, Member& old);
+  void upload(Member& member);
   void follow_rest(Member& member);
   void look_at(Member& member);
-  void take_back(const Member& member);
+  void read_back(const Member& member);
 
   dma::AddressSpace& memory_;
   JobSystem& jobs_;

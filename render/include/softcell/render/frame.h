@@ -17,10 +17,12 @@ namespace softcell::render {
 /// Handle to a mesh of one Renderer whose vertices change.
 struct MeshId {
   std::uint32_t value = 0;
+  std::uint32_t generation = 0;  ///< 0: the handle names nothing
 };
 /// Handle to a mesh of one Renderer that does not change.
 struct StaticMeshId {
   std::uint32_t value = 0;
+  std::uint32_t generation = 0;  ///< 0: the handle names nothing
 };
 
 enum class Pattern : std::uint8_t {

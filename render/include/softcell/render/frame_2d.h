@@ -18,6 +18,7 @@ namespace softcell::render {
 /// Handle to the triangles of one Renderer's shape.
 struct Shape2dId {
   std::uint32_t value = 0;
+  std::uint32_t generation = 0;  ///< 0: the handle names nothing
 };
 
 /// A corner of a shape's triangles.

@@ -10,6 +10,7 @@ namespace softcell::render {
 /// Handle to a texture of one Renderer.
 struct TextureId {
   std::uint32_t value = 0;
+  std::uint32_t generation = 0;  ///< 0: the handle names nothing
 };
 
 /// What a texture shows beyond its borders.

@@ -48,9 +48,8 @@ struct RendererSettings {
   float coarse_pixels = 0;
 };
 
-/// Meshes, pictures and shapes live until the program removes them or the renderer. After a program has removed one, it must not draw with
-/// its handle again. render() refuses a handle that names nothing, but cannot notice if a mesh, picture or shape added later has got the
-/// same handle.
+/// Meshes, pictures and shapes live until the program removes them or the renderer. The handle of one that was removed is never given to
+/// another: all functions refuse it. They cannot notice a handle of another renderer.
 ///
 /// Draws with one sun that casts soft-edged shadows, light from sky and ground with ambient occlusion, tone mapping and sRGB encoding, with
 /// four samples per pixel. With one sample it smooths edges in the finished picture. It draws into its own framebuffer and has no global
@@ -69,7 +68,7 @@ class Renderer {
   /// @throws std::invalid_argument  the number of indices is not a multiple of three.
   MeshId add_mesh(std::span<const std::uint32_t> indices);
 
-  /// Frees the memory of a mesh of add_mesh() or add_cell_mesh(). A mesh that is added later may get its handle.
+  /// Frees the memory of a mesh of add_mesh() or add_cell_mesh().
   /// @throws std::invalid_argument  no such mesh.
   void remove_mesh(MeshId mesh);
 
@@ -110,7 +109,7 @@ class Renderer {
   /// Adds a picture to draw meshes with. Copies the pixels before it returns.
   /// @throws std::invalid_argument  a picture without pixels, or larger than the context supports.
   TextureId add_texture(const Image& picture, const TextureSettings& settings = {});
-  /// Frees the memory of a picture. One that is added later may get its handle. @throws std::invalid_argument  no such texture.
+  /// Frees the memory of a picture. @throws std::invalid_argument  no such texture.
   void remove_texture(TextureId texture);
 
   /// Sets the rest shape of a mesh whose vertices change. RendererSettings::coarse_pixels needs it to leave out triangles.
@@ -126,25 +125,24 @@ class Renderer {
   /// @throws std::invalid_argument  the numbers of normals and positions differ, or an index is out of range.
   StaticMeshId add_static_mesh(std::span<const Eigen::Vector3f> positions,
                                std::span<const Eigen::Vector3f> normals, std::span<const Triangle> triangles);
-  /// Frees the memory of a mesh of add_static_mesh(). One that is added later may get its handle. @throws std::invalid_argument  no such
-  /// mesh.
+  /// Frees the memory of a mesh of add_static_mesh(). @throws std::invalid_argument  no such mesh.
   void remove_static_mesh(StaticMeshId mesh);
 
   /// Draws one frame: first opaque meshes, then meshes with an opacity below 1 in the given order, static ones last.
   /// @pre  opacities are 0..1; poses have a determinant above 0; shadow radii are above 0, those of particles 0 or above
-  /// @throws std::invalid_argument  a handle is not of this renderer, a link is out of range, a mesh with a
+  /// @throws std::invalid_argument  a handle names nothing, a link is out of range, a mesh with a
   /// texture has no texture coordinates, one with vertex colours has none, or a part is outside of its mesh.
   void render(const FrameDescription& frame);
 
   /// Adds the triangles of a shape in two dimensions. Each frame provides their vertices.
   /// @throws std::invalid_argument  more triangles than OpenGL can count.
   Shape2dId add_shape(std::span<const Triangle> triangles);
-  /// Frees the memory of a shape. A shape that is added later may get its handle. @throws std::invalid_argument  no such shape.
+  /// Frees the memory of a shape. @throws std::invalid_argument  no such shape.
   void remove_shape(Shape2dId shape);
 
   /// Draws one frame in two dimensions.
   /// @pre  its height and its squares are above 0; opacities are 0..1
-  /// @throws std::invalid_argument  a handle is not of this renderer, a shape has too few vertices, a line too few
+  /// @throws std::invalid_argument  a handle names nothing, a shape has too few vertices, a line too few
   /// points or another number of normals, or a link is out of range.
   void render(const Frame2d& frame);
 
