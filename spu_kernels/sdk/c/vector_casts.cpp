@@ -5,6 +5,8 @@
 // - A cast between vector types, `(vec_uchar16)x`, reinterprets a register's sixteen bytes. The compiler's own cast would show the
 //   host's byte order in each lane, so that the cast becomes a call of softcell_regroup() (softcell_c_types.h).
 // - `(vec_uint4)(1, 2, 3, 4)`, the old spelling of a literal, becomes one with braces.
+// - A literal that initialises static data, `static const vector float v = ((vec_float4){1, 2, 3, 4})`, becomes its braces alone: the
+//   host's compiler takes a literal there only if it is spelled as the variable's type is, and that is not const.
 // - `vector` before a type's name becomes the attribute. Elsewhere it stays what it is: a name.
 //
 // The compiler takes headers in the folders for those of a system, of which it says no warnings.
@@ -146,10 +148,15 @@ class Rewriter {
       // A function's body begins behind a parameter list, or behind the declarations of K&R's parameters; all else at this level is a
       // declaration or an initialiser.
       if (depth_++ == 0) in_function_ = last_ == ")" || last_ == ";";
+      if (depth_ == 1 && in_function_) is_static_ = false;
     } else if (t.text == "}") {
       if (--depth_ == 0) in_function_ = false;
     } else if (t.text == "typedef") {
       note_types(at_);
+    } else if (t.text == "static") {
+      is_static_ = true;
+    } else if (t.text == ";") {
+      is_static_ = false;
     }
     last_ = t.text;
     last_kind_ = t.kind;
@@ -164,13 +171,15 @@ class Rewriter {
 
   void step() {
     const Token& t = tokens_[at_];
-    if (foreign_) return copy();
-    if (t.kind == Token::kWord && t.text == "vector" && names_scalar(skip_blanks(at_ + 1))) {
+    if (!foreign_ && t.kind == Token::kWord && t.text == "vector" && names_scalar(skip_blanks(at_ + 1))) {
       out_ += "__attribute__((vector_size(16)))";
       last_ = "vector";
       ++at_;
       return;
     }
+    // Also where it is the expansion of a header's macro.
+    if (t.text == "(" && initialises_static_data() && braces_of_literal()) return;
+    if (foreign_) return copy();
     if (t.text == "(" && may_begin_a_cast()) {
       Type type;
       if (const std::size_t behind = vector_in_parentheses(at_, type); behind != 0) {
@@ -183,6 +192,36 @@ class Rewriter {
 
   bool names_scalar(std::size_t at) const {
     return at < tokens_.size() && kScalarWords.count(tokens_[at].text) != 0;
+  }
+
+  bool initialises_static_data() const {
+    return (!in_function_ || is_static_) && (last_ == "=" || last_ == "{" || last_ == ",");
+  }
+
+  /// Writes a vector's literal, perhaps in more parentheses, as its braces if it is all that initialises something here.
+  bool braces_of_literal() {
+    std::size_t begin = at_, behind = 0, around = 0;
+    Type type;
+    for (; (behind = vector_in_parentheses(begin, type)) == 0; ++around, type = {}) {
+      begin = skip_blanks(begin + 1);
+      if (!is(begin, "(")) return false;
+    }
+    const std::size_t open = skip_blanks(behind);
+    if (!is(open, "{") && !is_literal(type, open)) return false;
+    std::size_t end = behind_parentheses(open);
+    const std::size_t close = end - 1;
+    for (; around != 0; --around) {
+      end = skip_blanks(end);
+      if (!is(end, ")")) return false;
+      ++end;
+    }
+    const std::size_t next = skip_blanks(end);
+    if (!is(next, ",") && !is(next, ";") && !is(next, "}")) return false;
+    blanks(at_, open);
+    braces(open, close);
+    blanks(close, end);
+    at_ = end;
+    return true;
   }
 
   /// Not behind a name or a value: that is a call, a parameter list, or sizeof.
@@ -367,6 +406,11 @@ class Rewriter {
     const std::size_t open = skip_blanks(behind), close = behind_parentheses(open) - 1;
     out_ += "(" + type.text + ")";
     blanks(at_, open);
+    braces(open, close);
+  }
+
+  /// What lies between two tokens, in braces.
+  void braces(std::size_t open, std::size_t close) {
     out_ += "{";
     at_ = open + 1;
     last_ = "{";
@@ -483,6 +527,7 @@ class Rewriter {
   Token::Kind last_kind_ = Token::kSign;
   int depth_ = 0;
   bool in_function_ = false, foreign_ = false;
+  bool is_static_ = false;  ///< in a declaration that has the word static
 };
 
 }  // namespace

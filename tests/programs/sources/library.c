@@ -108,6 +108,12 @@ static void heap(void) {
   char* const again = malloc(200000);
   CHECK(again != NULL);
   free(again);
+  unsigned char bytes[40] = {0};
+  int place;
+  for (place = 0; place < 20; ++place) {
+    store_vec_unaligned(bytes + place, ((vec_uchar16){7, 8, 9}));
+    CHECK(bytes[place + 2] == 9 && bytes[place + 3] == 0 && spu_extract(load_vec_unaligned(bytes + place + 1), 0) == 8);
+  }
   char* const aligned = malloc_align(300, 7);
   CHECK(((uintptr_t)aligned & 127) == 0);
   char* const grown = realloc(calloc(4, 4), 64);
