@@ -113,6 +113,7 @@ static void error_and_gamma_functions(void) {
   CHECK(remquo(29, 3, &quotient) == -1 && (quotient & 7) == 2 && remquo(-7, 2, &quotient) == 1 && quotient == -4);
   CHECK(remquo(1e308, 1e300, &quotient) == remainder(1e308, 1e300) && remquof(10, 3, &quotient) == 1 && quotient == 3);
   CHECK(remainder(1e308, 1e300) == -4.1525696625763965e+291);
+  CHECK(is_none(nan("")) && nanf("") != 0);
   CHECK(isgreater(x, 1) && islessequal(1.0, x) && isunordered(x, NAN) && !isless(x, NAN) && !isgreaterequal(1.0, x) && islessgreater(1.0, x));
 }
 

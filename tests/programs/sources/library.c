@@ -122,6 +122,31 @@ static void heap(void) {
   free_align(aligned);
 }
 
+/* As POSIX defines them, a PC has the same. */
+static void random_numbers(void) {
+  unsigned short state[3] = {0x330E, 1, 0};
+  int i;
+  srand48(1);
+  CHECK(drand48() == 0x0.0aa849495101p0 && lrand48() == 976015093);
+  CHECK(erand48(state) == 0x0.0aa849495101p0 && nrand48(state) == 976015093 && jrand48(state) == (long)3585512650u && state[2] == 0xD5B6);
+  srand48(2009);
+  CHECK(mrand48() == -1663586239 && mrand48() == 1168852354);
+  srandom(5);
+  const long first = random();
+  for (i = 0; i < 100; ++i) CHECK(random() >= 0);
+  srandom(5);
+  CHECK(random() == first);
+}
+
+static void copies(void) {
+  char text[8] = "";
+  CHECK(strlcpy(text, "abc", sizeof text) == 3 && strlcat(text, "defghijk", sizeof text) == 11 && strcmp(text, "abcdefg") == 0);
+  CHECK(strlcpy(text, "abc", 0) == 3 && text[0] == 'a' && strlcat(text, "x", 3) == 4);
+  CHECK(memccpy(text, "12;34", ';', 5) == text + 3 && text[3] == 'd' && memccpy(text, "12", ';', 2) == NULL);
+  CHECK(mempcpy(text, "xy", 2) == text + 2 && text[1] == 'y' && ffs(0) == 0 && ffs(0x50) == 5);
+  CHECK(isascii('a') && !isascii(200) && toascii(200) == 72);
+}
+
 static char* written(const char* format, ...) {
   char* text;
   va_list list;
@@ -204,6 +229,8 @@ static void output(void) {
 }
 
 int main(int argc, char** argv) {
+  random_numbers();
+  copies();
   assert(failures == 0);
   strings();
   numbers();

@@ -121,6 +121,15 @@ long lroundf(float x_);
 long lround(double x_);
 long long llroundf(float x_);
 long long llround(double x_);
+/// NaN; the text is not looked at.
+static __inline__ __attribute__((unused)) double nan(const char* text) {
+  (void)text;
+  return __builtin_nan("");
+}
+static __inline__ __attribute__((unused)) float nanf(const char* text) {
+  (void)text;
+  return NAN;
+}
 double remquo(double x_, double y_, int* quotient);
 float remquof(float x_, float y_, int* quotient);
 float modff(float x_, float* whole);
