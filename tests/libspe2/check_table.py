@@ -31,7 +31,7 @@ def check_c_library(root):
         text = re.sub(r"^__attribute__\(\(error\([^;]*;", "", text, flags=re.M)  # what is refused
         declared |= set(re.findall(r"^[A-Za-z_][\w \t*]*?[\s*](\w+)\s*\([^;{]*\)[^;{]*;", text, flags=re.M))
         declared |= set(re.findall(r"^SC_FUNCTION_OF_[12]\((\w+)\)", text, flags=re.M))
-        declared |= set(re.findall(r"^#define _\w+4? (\w+(?:4|d2))$", text, flags=re.M))
+        declared |= set(re.findall(r"^#define _(\w+) \1$", text, flags=re.M))
     declared -= {"softcell_assertion_failed", "name", "SC_CACHE_OF"}
     declared = {each for each in declared if not (each.endswith("f") and each[:-1] in declared)}
     page = set(re.findall(r"`(\w+)`", (root / "docs/reference/c-library.md").read_text()))

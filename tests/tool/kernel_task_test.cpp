@@ -13,6 +13,7 @@
 #include "kernel_runs/kernel_buffers.h"
 #include "support/scratch_folder.h"
 #include "support/text_file.h"
+#include "verb/deadline.h"
 #include "verb/exit_status.h"
 
 namespace softcell::tool {

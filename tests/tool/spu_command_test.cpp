@@ -440,6 +440,9 @@ TEST_F(SpuCommand, ExploreIsContentWithACorrectKernel) {
   const auto json = read_json(folder_ / "e.json");
   EXPECT_EQ(json["differs"], false);
   EXPECT_EQ(json["seeds_tried"], 20);
+  const CommandResult quiet = run_softcell("spu explore --quiet " + kSaxpy + saxpy_options(2) + "--seeds 2");
+  EXPECT_EQ(quiet.status, 0);
+  EXPECT_EQ(quiet.output, "");
 }
 
 TEST_F(SpuCommand, ExploreFindsAKernelThatDoesNotWaitAndSaysHowToSeeItAgain) {

@@ -231,6 +231,38 @@ TEST(SpuDebug, HasAThreadForEachSpe) {
   EXPECT_NE(end.output.find("SPE 2 executed 27474 instructions"), std::string::npos) << end.output;
 }
 
+/// The SPEs take turns, so the second one begins after the first one has ended: selfcheck has no channel operation.
+TEST(SpuDebug, StepsAnSpeThatHasNotBegunAndShowsWhichHaveEnded) {
+  Debugged spu(debugged_file("selfcheck") + " --spes 2");
+  const std::string first = spu.ask("m3d0,10");
+  EXPECT_EQ(spu.ask("Hg2"), "OK");
+  const std::uint32_t entry = spu.counter();
+  EXPECT_EQ(entry, 0x3D0u);
+  EXPECT_EQ(spu.ask("m3d0,10"), first) << "the code lies there before the first turn";
+  EXPECT_EQ(spu.ask("m0,4"), "00000000");
+  EXPECT_EQ(spu.ask("s"), "T05thread:2;");
+  EXPECT_EQ(spu.counter(), entry + 4);
+  EXPECT_EQ(spu.ask("qfThreadInfo"), "m2");
+  EXPECT_EQ(spu.ask("T1"), "E01");
+  EXPECT_EQ(spu.ask("T2"), "OK");
+  EXPECT_EQ(spu.ask("Hg1"), "OK");
+  EXPECT_EQ(spu.ask("s").substr(0, 1), "E") << "it has ended";
+  EXPECT_EQ(spu.ask("Hg2"), "OK");
+  EXPECT_EQ(spu.ask("bs").substr(0, 3), "T05");
+  EXPECT_EQ(spu.ask("c"), "W00");
+}
+
+/// A step over the end of an SPE stops where another one goes on.
+TEST(SpuDebug, StopsAtTheNextSpeWhenOneHasEnded) {
+  Debugged spu(debugged_file("selfcheck") + " --spes 2");
+  EXPECT_EQ(spu.ask("Z0,410,4"), "OK");  // the start-up code's stop
+  EXPECT_EQ(spu.ask("c"), "T05thread:1;");
+  EXPECT_EQ(spu.ask("s"), "T05thread:2;");
+  EXPECT_EQ(spu.counter(), 0x3D0u);
+  EXPECT_EQ(spu.ask("c"), "T05thread:2;");
+  EXPECT_EQ(spu.ask("s"), "W00");
+}
+
 /// The program fails as it waits for a mailbox that nobody fills. The debugger can read its registers there; when it goes on, it ends.
 TEST(SpuDebug, StandsWhereItFailsBeforeItEnds) {
   Debugged spu(debugged_file("mailbox_echo"));

@@ -1,16 +1,20 @@
 // softcell_vector_casts: reads the preprocessed source of a C kernel and writes it with SPU vectors as the host's C compiler needs them.
 //
-//   softcell_vector_casts name.i name.softcell.i [FOLDER...]
+//   softcell_vector_casts [--c++] name.i name.softcell.i [FOLDER...]
 //
 // - A cast between vector types, `(vec_uchar16)x`, reinterprets a register's sixteen bytes. The compiler's own cast would show the
 //   host's byte order in each lane, so that the cast becomes a call of softcell_regroup() (softcell_c_types.h).
 // - `(vec_uint4)(1, 2, 3, 4)`, the old spelling of a literal, becomes one with braces.
+// - A literal that initialises static data, `static const vector float v = ((vec_float4){1, 2, 3, 4})`, becomes its braces alone: the
+//   host's compiler takes a literal there only if it is spelled as the variable's type is, and that is not const.
 // - `vector` before a type's name becomes the attribute. Elsewhere it stays what it is: a name.
 //
 // The compiler takes headers in the folders for those of a system, of which it says no warnings.
 //
-// Lines stay where they are, so that the compiler's messages and the debugger name those of the source. C++ needs none of this: its
-// vectors are classes.
+// Lines stay where they are, so that the compiler's messages and the debugger name those of the source.
+//
+// In C++ vectors are classes, which do all of that by themselves, except for two spellings: `vector unsigned int` becomes the name of its
+// class, `vec_uint4`, and literals in parentheses get braces.
 
 #include <algorithm>
 #include <cctype>
@@ -42,7 +46,16 @@ std::size_t end_of_literal(std::string_view s, std::size_t at) {
   return at < s.size() ? at + 1 : s.size();
 }
 
-std::vector<Token> tokens_of(std::string_view s) {
+/// The end of R"word(...)word", whose quotation mark is at `at`.
+std::size_t end_of_raw_string(std::string_view s, std::size_t at) {
+  const std::size_t open = s.find('(', at);
+  if (open == std::string_view::npos) return s.size();
+  const std::string close = ")" + std::string(s.substr(at + 1, open - at - 1)) + "\"";
+  const std::size_t end = s.find(close, open);
+  return end == std::string_view::npos ? s.size() : end + close.size();
+}
+
+std::vector<Token> tokens_of(std::string_view s, bool is_cxx) {
   std::vector<Token> tokens;
   bool line_begins = true;
   for (std::size_t at = 0; at < s.size();) {
@@ -57,11 +70,14 @@ std::vector<Token> tokens_of(std::string_view s) {
       kind = Token::kSpace;
     } else if (c == '"' || c == '\'') {
       kind = Token::kText;
-      end = end_of_literal(s, at);
+      const bool is_raw = c == '"' && !tokens.empty() && tokens.back().kind == Token::kWord &&
+                          tokens.back().text.back() == 'R';
+      end = is_raw ? end_of_raw_string(s, at) : end_of_literal(s, at);
     } else if (std::isdigit(static_cast<unsigned char>(c)) != 0 ||
                (c == '.' && at + 1 < s.size() && std::isdigit(static_cast<unsigned char>(s[at + 1])) != 0)) {
       kind = Token::kNumber;
       while (end < s.size() && (is_word(s[end]) || s[end] == '.' ||
+                                (is_cxx && s[end] == '\'' && end + 1 < s.size() && is_word(s[end + 1])) ||
                                 ((s[end] == '+' || s[end] == '-') &&
                                  std::string_view("eEpP").find(s[end - 1]) != std::string_view::npos)))
         ++end;
@@ -111,10 +127,25 @@ std::size_t lanes_of(const std::multiset<std::string>& words) {
   return words.count("double") != 0 || words.count("long") == 2 ? 2 : 4;
 }
 
+/// The class of a vector in C++, from the scalar's words.
+std::string class_of(const std::multiset<std::string>& words) {
+  const bool is_unsigned = words.count("unsigned") != 0;
+  if (words.count("float") != 0) return "vec_float4";
+  if (words.count("double") != 0) return "vec_double2";
+  if (words.count("char") != 0)  // plain ones have no sign on an SPU
+    return words.count("signed") + words.count("__signed__") == 0 ? "vec_uchar16" : "vec_char16";
+  if (words.count("short") != 0) return is_unsigned ? "vec_ushort8" : "vec_short8";
+  if (words.count("long") == 2) return is_unsigned ? "vec_ullong2" : "vec_llong2";
+  return is_unsigned ? "vec_uint4" : "vec_int4";
+}
+const std::map<std::string, std::size_t, std::less<>> kLanesOfClasses = {
+    {"vec_uchar16", 16}, {"vec_char16", 16}, {"vec_ushort8", 8}, {"vec_short8", 8}, {"vec_uint4", 4},
+    {"vec_int4", 4},     {"vec_float4", 4},  {"vec_ullong2", 2}, {"vec_llong2", 2}, {"vec_double2", 2}};
+
 class Rewriter {
  public:
-  Rewriter(std::vector<Token> tokens, std::vector<std::string> system_folders)
-      : tokens_(std::move(tokens)), system_folders_(std::move(system_folders)) {}
+  Rewriter(std::vector<Token> tokens, bool is_cxx, std::vector<std::string> system_folders)
+      : tokens_(std::move(tokens)), is_cxx_(is_cxx), system_folders_(std::move(system_folders)) {}
 
   std::string run() {
     while (at_ < tokens_.size()) step();
@@ -146,10 +177,15 @@ class Rewriter {
       // A function's body begins behind a parameter list, or behind the declarations of K&R's parameters; all else at this level is a
       // declaration or an initialiser.
       if (depth_++ == 0) in_function_ = last_ == ")" || last_ == ";";
+      if (depth_ == 1 && in_function_) is_static_ = false;
     } else if (t.text == "}") {
       if (--depth_ == 0) in_function_ = false;
-    } else if (t.text == "typedef") {
+    } else if (t.text == "typedef" && !is_cxx_) {
       note_types(at_);
+    } else if (t.text == "static") {
+      is_static_ = true;
+    } else if (t.text == ";") {
+      is_static_ = false;
     }
     last_ = t.text;
     last_kind_ = t.kind;
@@ -163,14 +199,17 @@ class Rewriter {
   }
 
   void step() {
+    if (is_cxx_) return cxx_step();
     const Token& t = tokens_[at_];
-    if (foreign_) return copy();
-    if (t.kind == Token::kWord && t.text == "vector" && names_scalar(skip_blanks(at_ + 1))) {
+    if (!foreign_ && t.kind == Token::kWord && t.text == "vector" && names_scalar(skip_blanks(at_ + 1))) {
       out_ += "__attribute__((vector_size(16)))";
       last_ = "vector";
       ++at_;
       return;
     }
+    // Also where it is the expansion of a header's macro.
+    if (t.text == "(" && initialises_static_data() && braces_of_literal()) return;
+    if (foreign_) return copy();
     if (t.text == "(" && may_begin_a_cast()) {
       Type type;
       if (const std::size_t behind = vector_in_parentheses(at_, type); behind != 0) {
@@ -181,8 +220,74 @@ class Rewriter {
     copy();
   }
 
+  void cxx_step() {
+    std::string name;
+    if (foreign_) return copy();
+    if (const std::size_t behind = vector_class(at_, name); behind != at_) {
+      out_ += name;
+      blanks(at_, behind);
+      at_ = behind;
+      last_ = name;
+      last_kind_ = Token::kWord;
+      return;
+    }
+    if (tokens_[at_].text == "(" && may_begin_a_cast()) {
+      const std::size_t begin = skip_blanks(at_ + 1);
+      std::size_t behind = vector_class(begin, name);
+      if (behind == begin && begin < tokens_.size() && kLanesOfClasses.count(tokens_[begin].text) != 0)
+        name = tokens_[behind++].text;
+      const std::size_t close = skip_blanks(behind), open = skip_blanks(close + 1);
+      if (behind != begin && is(close, ")") && is(open, "(") && commas(open) + 1 == kLanesOfClasses.at(name))
+        return literal({.text = name}, close + 1);
+    }
+    copy();
+  }
+
+  /// `vector` or `__vector` and a scalar's words. @return  the token behind them, or `at`
+  std::size_t vector_class(std::size_t at, std::string& name) const {
+    if (!is(at, "vector") && !is(at, "__vector")) return at;
+    std::multiset<std::string> words;
+    std::size_t behind = at;
+    for (std::size_t next = skip_blanks(at + 1); names_scalar(next); next = skip_blanks(next + 1)) {
+      words.insert(tokens_[next].text);
+      behind = next + 1;
+    }
+    if (!words.empty()) name = class_of(words);
+    return behind;
+  }
+
   bool names_scalar(std::size_t at) const {
     return at < tokens_.size() && kScalarWords.count(tokens_[at].text) != 0;
+  }
+
+  bool initialises_static_data() const {
+    return (!in_function_ || is_static_) && (last_ == "=" || last_ == "{" || last_ == ",");
+  }
+
+  /// Writes a vector's literal, perhaps in more parentheses, as its braces if it is all that initialises something here.
+  bool braces_of_literal() {
+    std::size_t begin = at_, behind = 0, around = 0;
+    Type type;
+    for (; (behind = vector_in_parentheses(begin, type)) == 0; ++around, type = {}) {
+      begin = skip_blanks(begin + 1);
+      if (!is(begin, "(")) return false;
+    }
+    const std::size_t open = skip_blanks(behind);
+    if (!is(open, "{") && !is_literal(type, open)) return false;
+    std::size_t end = behind_parentheses(open);
+    const std::size_t close = end - 1;
+    for (; around != 0; --around) {
+      end = skip_blanks(end);
+      if (!is(end, ")")) return false;
+      ++end;
+    }
+    const std::size_t next = skip_blanks(end);
+    if (!is(next, ",") && !is(next, ";") && !is(next, "}")) return false;
+    blanks(at_, open);
+    braces(open, close);
+    blanks(close, end);
+    at_ = end;
+    return true;
   }
 
   /// Not behind a name or a value: that is a call, a parameter list, or sizeof.
@@ -367,6 +472,11 @@ class Rewriter {
     const std::size_t open = skip_blanks(behind), close = behind_parentheses(open) - 1;
     out_ += "(" + type.text + ")";
     blanks(at_, open);
+    braces(open, close);
+  }
+
+  /// What lies between two tokens, in braces.
+  void braces(std::size_t open, std::size_t close) {
     out_ += "{";
     at_ = open + 1;
     last_ = "{";
@@ -475,6 +585,7 @@ class Rewriter {
   }
 
   std::vector<Token> tokens_;
+  bool is_cxx_;
   std::vector<std::string> system_folders_;
   std::map<std::string, Type, std::less<>> types_;
   std::size_t at_ = 0;
@@ -483,13 +594,16 @@ class Rewriter {
   Token::Kind last_kind_ = Token::kSign;
   int depth_ = 0;
   bool in_function_ = false, foreign_ = false;
+  bool is_static_ = false;  ///< in a declaration that has the word static
 };
 
 }  // namespace
 
 int main(int count, char** arguments) {
+  const bool is_cxx = count > 1 && arguments[1] == std::string_view("--c++");
+  if (is_cxx) ++arguments, --count;
   if (count < 3) {
-    std::cerr << "usage: softcell_vector_casts PREPROCESSED OUTPUT [FOLDER...]\n";
+    std::cerr << "usage: softcell_vector_casts [--c++] PREPROCESSED OUTPUT [FOLDER...]\n";
     return 2;
   }
   std::ifstream in(arguments[1], std::ios::binary);
@@ -499,7 +613,7 @@ int main(int count, char** arguments) {
     return 1;
   }
   std::ofstream out(arguments[2], std::ios::binary);
-  out << Rewriter(tokens_of(source), {arguments + 3, arguments + count}).run();
+  out << Rewriter(tokens_of(source, is_cxx), is_cxx, {arguments + 3, arguments + count}).run();
   if (!out.flush()) {
     std::cerr << "softcell_vector_casts: " << arguments[2] << " cannot be written\n";
     return 1;

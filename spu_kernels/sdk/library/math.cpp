@@ -56,6 +56,7 @@ constexpr double kArcTangent[] = {1,         -1.0 / 3, 1.0 / 5,   -1.0 / 7, 1.0 
                                   -1.0 / 15, 1.0 / 17, -1.0 / 19, 1.0 / 21, -1.0 / 23, 1.0 / 25};
 constexpr double kHyperbolicSine[] = {1.0 / 6, 1.0 / 120, 1.0 / 5040, 1.0 / 362880, 1.0 / 39916800};
 constexpr double kLargest = 0x1.FFFFFEp127, kSmallest = 0x1p-126;  // of floats
+constexpr double kLargestDouble = 0x1.FFFFFFFFFFFFFp1023;
 
 int64_t bits_of(double x) {
   int64_t bits;
@@ -105,6 +106,10 @@ double power_of_2(int64_t n) {
   if (n < -1022) return 0;
   return of_bits(((n > 1023 ? 1023 : n) + 1023) << 52);
 }
+/// x 2^n, n in -1022..1024: 2^1024 is no double, while half of it is one.
+double times_power_of_2(double x, int64_t n) {
+  return n > 1023 ? x * 2 * power_of_2(1023) : x * power_of_2(n);
+}
 
 template <int N>
 double polynomial(double x, const double (&coefficients)[N]) {
@@ -147,7 +152,7 @@ double scaled(double x, int exponent) {
 /// x = part * 2^exponent, |part| in [1/2, 1).
 double parted(double x, int* exponent) {
   *exponent = 0;
-  if (x == 0 || size_of(x) > 0x1.FFFFFFFFFFFFFp1023) return x;
+  if (x == 0 || size_of(x) > kLargestDouble) return x;
   *exponent = static_cast<int>(bits_of(x) >> 52 & 0x7FF) - 1022;
   return of_bits((bits_of(x) & ~(int64_t{0x7FF} << 52)) | (int64_t{1022} << 52));
 }
@@ -156,7 +161,7 @@ double parted(double x, int* exponent) {
 double remainder_towards_zero(double x, double y) {
   const double divisor = size_of(y);
   double rest = size_of(x);
-  if (divisor == 0 || rest > 0x1.FFFFFFFFFFFFFp1023) return 0;
+  if (divisor == 0 || rest > kLargestDouble) return 0;
   while (rest >= divisor) {
     const int64_t difference = (bits_of(rest) >> 52) - (bits_of(divisor) >> 52);
     double part = divisor * power_of_2(difference);
@@ -169,7 +174,7 @@ double remainder_towards_zero(double x, double y) {
 /// Of the quotient that is nearest, halves to even.
 double remainder_to_nearest(double x, double y) {
   const double divisor = size_of(y), twice = divisor + divisor;
-  double rest = size_of(twice < kLargest * kLargest ? remainder_towards_zero(x, twice) : x);
+  double rest = size_of(twice <= kLargestDouble ? remainder_towards_zero(x, twice) : x);
   if (divisor == 0) return 0;
   if (rest > 0.5 * divisor) {
     rest -= divisor;
@@ -218,7 +223,7 @@ Pair product(Pair a, Pair b) {
 
 /// Correctly rounded: from an estimate the double below the root, and then by the sign of a residue that is exact.
 double root_of(double x) {
-  if (!(x > 0) || x > 0x1.FFFFFFFFFFFFFp1023) return x > 0 ? x : 0;
+  if (!(x > 0) || x > kLargestDouble) return x > 0 ? x : 0;
   int exponent;
   double part = parted(x, &exponent);
   if ((exponent & 1) != 0) {
@@ -255,18 +260,18 @@ double root_of(double x) {
 double small_exponential(double r) { return r * polynomial(r, kExponential); }
 
 double exponential(double x) {
-  if (x > 709) return HUGE_VAL;
+  if (x > 709.782712893384) return HUGE_VAL;
   if (!(x > -708)) return 0;
   const int64_t k = nearest(x * kLog2e);
   const double n = static_cast<double>(k);
   const double r = x - n * 0x1.62E42FEEp-1 - n * 0x1.A39EF35793C76p-33;
-  return power_of_2(k) * (1 + small_exponential(r));
+  return times_power_of_2(1 + small_exponential(r), k);
 }
 double exponential_of_2(double x) {
-  if (x > 1024) return HUGE_VAL;
+  if (x >= 1024) return HUGE_VAL;
   if (!(x > -1022)) return 0;
   const int64_t k = nearest(x);
-  return power_of_2(k) * (1 + small_exponential((x - static_cast<double>(k)) * kLn2));
+  return times_power_of_2(1 + small_exponential((x - static_cast<double>(k)) * kLn2), k);
 }
 double exponential_less_1(double x) { return size_of(x) < 0.34 ? small_exponential(x) : exponential(x) - 1; }
 
@@ -294,18 +299,20 @@ double no_logarithm(double x) { return x == 0 ? -kLargest : 0; }
 
 double natural_logarithm(double x) {
   if (!(x > 0)) return no_logarithm(x);
-  if (x > 0x1.FFFFFFFFFFFFFp1023) return x;
+  if (x > kLargestDouble) return x;
   const Logarithm l = logarithm(x);
   return l.exponent * kLn2 + l.of_part;
 }
 double logarithm_to_2(double x) {
   if (!(x > 0)) return no_logarithm(x);
+  if (x > kLargestDouble) return x;
   const Logarithm l = logarithm(x);
   return l.exponent + l.of_part * kLog2e;
 }
 /// ln (1 + x), by the logarithm of what 1 + x is rounded to.
 double logarithm_of_1_and(double x) {
   if (!(x > -1)) return no_logarithm(x + 1);
+  if (x > kLargestDouble) return x;
   const double u = 1 + x;
   return u == 1 ? x : natural_logarithm(u) * (x / (u - 1));
 }
@@ -356,12 +363,12 @@ double exponential_of(Pair x) {
                      r.high * square.high * polynomial(r.high, kExponentialTail);
   const Pair second = sum_of_ordered(r.high, 0.5 * square.high), first = sum_of_ordered(1, second.high);
   const double part = first.high + (first.low + (second.low + low));
-  return k > 1023 ? part * 2 * power_of_2(1023) : part * power_of_2(k);
+  return times_power_of_2(part, k);
 }
 
 double logarithm_to_10(double x) {
   if (!(x > 0)) return no_logarithm(x);
-  if (x > 0x1.FFFFFFFFFFFFFp1023) return x;
+  if (x > kLargestDouble) return x;
   const Pair both = product(precise_logarithm(x), kOverLn10);
   return both.high + both.low;
 }
@@ -369,12 +376,13 @@ double logarithm_to_10(double x) {
 double power(double x, double y) {
   if (y == 0 || x == 1) return 1;
   if (x != x || y != y) return x + y;
-  if (x == 0) return y > 0 ? 0 : HUGE_VAL;
   const bool whole = truncated(y) == y;
-  if (x < 0 && !whole) return 0;
-  const bool is_negative = x < 0 && remainder_towards_zero(y, 2) != 0;
+  const bool is_negative = bits_of(x) < 0 && whole && remainder_towards_zero(y, 2) != 0;
+  if (x == 0) return with_sign_of(y > 0 ? 0 : HUGE_VAL, is_negative ? -1 : 1);
+  if (x == -1 && size_of(y) > kLargestDouble) return 1;
+  if (x < 0 && x >= -kLargestDouble && !whole) return 0;
   double size = size_of(x);
-  if (size > 0x1.FFFFFFFFFFFFFp1023) {
+  if (size > kLargestDouble) {
     size = y > 0 ? HUGE_VAL : 0;
   } else {
     const Pair logarithm_of_x = precise_logarithm(size);
@@ -393,7 +401,7 @@ double power(double x, double y) {
 
 /// From an estimate by Newton's iteration, once, so that cubes of whole numbers have whole roots.
 double cube_root(double x) {
-  if (x == 0 || size_of(x) > 0x1.FFFFFFFFFFFFFp1023) return x;
+  if (x == 0 || size_of(x) > kLargestDouble) return x;
   const double size = size_of(x), root = exponential(natural_logarithm(size) / 3);
   return with_sign_of(root - (root * root * root - size) / (3 * root * root), x);
 }
@@ -402,7 +410,7 @@ double cube_root(double x) {
 double hypotenuse(double x, double y) {
   const double larger = size_of(x) > size_of(y) ? size_of(x) : size_of(y);
   const double smaller = size_of(x) > size_of(y) ? size_of(y) : size_of(x);
-  if (larger + smaller == larger || larger > 0x1.FFFFFFFFFFFFFp1023) return larger;
+  if (larger + smaller == larger || larger > kLargestDouble) return larger;
   int exponent;
   const double a = parted(larger, &exponent), b = scaled(smaller, -exponent);
   const Pair a_square = product(a, a), b_square = product(b, b);
@@ -495,6 +503,7 @@ double sine_in(int quadrant, double x) {
   return (quadrant & 2) != 0 ? -value : value;
 }
 double sine(double x) {
+  if (x == 0) return x;
   const Angle a = reduce(x);
   return sine_in(a.quadrant, a.rest);
 }
@@ -503,6 +512,7 @@ double cosine(double x) {
   return sine_in(a.quadrant + 1, a.rest);
 }
 double tangent(double x) {
+  if (x == 0) return x;
   const Angle a = reduce(x);
   return sine_in(a.quadrant, a.rest) / sine_in(a.quadrant + 1, a.rest);
 }
@@ -520,6 +530,8 @@ double arc_tangent(double x) {
 }
 double arc_tangent_of(double y, double x) {
   if (x == 0 && y == 0) return with_sign_of(with_sign_of(1, x) < 0 ? kPi : 0, y);
+  if (size_of(x) > kLargestDouble && size_of(y) > kLargestDouble)
+    return with_sign_of(x > 0 ? kPi / 4 : 3 * kPi / 4, y);
   if (size_of(y) > size_of(x)) return with_sign_of(kPi / 2, y) - arc_tangent(x / y);
   const double angle = arc_tangent(y / x);
   return x > 0 ? angle : angle + with_sign_of(kPi, y);
@@ -529,17 +541,23 @@ double arc_cosine(double x) { return size_of(x) > 1 ? 0 : arc_tangent_of(root_of
 
 // ---- hyperbolic functions
 
+/// e^x / 2, which is a double for some x whose e^x is none.
+double half_exponential(double x) {
+  if (x < 709) return 0.5 * exponential(x);
+  const double root = exponential(0.5 * x);
+  return 0.5 * root * root;
+}
 double hyperbolic_sine(double x) {
   if (size_of(x) < 0.5) {  // where the difference of exponentials would lose digits
     const double s = x * x;
     return x + x * s * polynomial(s, kHyperbolicSine);
   }
-  const double e = exponential(size_of(x));
-  return with_sign_of((e - 1 / e) / 2, x);
+  const double e = half_exponential(size_of(x));
+  return with_sign_of(e - 0.25 / e, x);
 }
 double hyperbolic_cosine(double x) {
-  const double e = exponential(size_of(x));
-  return (e + 1 / e) / 2;
+  const double e = half_exponential(size_of(x));
+  return e + 0.25 / e;
 }
 double hyperbolic_tangent(double x) {
   return size_of(x) > 20 ? with_sign_of(1, x) : hyperbolic_sine(x) / hyperbolic_cosine(x);
@@ -568,6 +586,104 @@ double exponent_of(double x) {
   int exponent;
   parted(x, &exponent);
   return exponent - 1;
+}
+
+// ---- the error function and the gamma function
+
+constexpr double kRootOfPi = 1.7724538509055160273, kLogarithmOfRootOfTwoPi = 0.91893853320467274178;
+
+/// |x| < 2: x e^-x^2 (1 + 2x^2/3 (1 + 2x^2/5 (...))), whose terms are positive, so that nothing cancels.
+double error_near_0(double x) {
+  const double s = x * x;
+  double sum = 1;
+  for (int k = 40; k > 0; --k) sum = 1 + sum * (2 * s / (2 * k + 1));
+  return 2 / kRootOfPi * x * exponential(-s) * sum;
+}
+/// 1 - erf x for x >= 2: Laplace's continued fraction. x^2 is exact before the exponential, which would enlarge its error.
+double error_left_of(double x) {
+  if (x > 27) return 0;
+  const Pair square = product(x, x);
+  double fraction = x;
+  for (int k = 60; k > 0; --k) fraction = x + 0.5 * k / fraction;
+  return exponential(-square.high) * (1 - square.low) / (kRootOfPi * fraction);
+}
+double error_function(double x) {
+  const double size = size_of(x);
+  return size < 2 ? error_near_0(x) : with_sign_of(1 - error_left_of(size), x);
+}
+double error_function_left(double x) {
+  if (size_of(x) < 2) return 1 - error_near_0(x);
+  return x < 0 ? 2 - error_left_of(-x) : error_left_of(x);
+}
+
+/// ln gamma(2 + z) = z (1 - Euler's constant + z (c2 + z (c3 + ...))), ck = (-1)^k (zeta(k) - 1) / k.
+/// |z| <= 1/2 [DLMF 5.7.3] documented
+constexpr double kOneLessEuler = 0.42278433509846714;
+constexpr double kLogarithmOfGamma[] = {
+    0.3224670334241132,     -0.0673523010531981,     0.020580808427784546,   -0.007385551028673986,
+    0.0028905103307415234,  -0.001192753911703261,   0.0005096695247430425,  -0.00022315475845357939,
+    9.945751278180853e-05,  -4.492623673813314e-05,  2.050721277567069e-05,  -9.439488275268397e-06,
+    4.374866789907488e-06,  -2.039215753801366e-06,  9.55141213040742e-07,   -4.492469198764566e-07,
+    2.1207184805554665e-07, -1.0043224823968099e-07, 4.7698101693639804e-08, -2.2711094608943164e-08,
+    1.0838659214896955e-08, -5.183475041970047e-09,  2.4836745438024785e-09, -1.1921401405860912e-09};
+double logarithm_of_gamma_near_2(double z) {
+  return z * (kOneLessEuler + z * polynomial(z, kLogarithmOfGamma));
+}
+
+/// sin(pi x), whose zeros are exact.
+double sine_of_half_turns(double x) {
+  const double whole = rounded(x), value = sine(kPi * (x - whole));
+  return remainder_towards_zero(whole, 2) != 0 ? -value : value;
+}
+
+/// Stirling's series, from 12 on. [DLMF 5.11.1] documented
+constexpr double kStirling[] = {1.0 / 12, -1.0 / 360, 1.0 / 1260, -1.0 / 1680, 1.0 / 1188, -691.0 / 360360};
+/// x > 0
+double logarithm_of_gamma_above_0(double x) {
+  if (x < 0.5) return logarithm_of_gamma_near_2(x) - logarithm_of_1_and(x) - natural_logarithm(x);
+  if (x < 1.5) return logarithm_of_gamma_near_2(x - 1) - logarithm_of_1_and(x - 1);
+  if (x >= 12) {
+    const double reciprocal = 1 / x;
+    return (x - 0.5) * natural_logarithm(x) - x +
+           (kLogarithmOfRootOfTwoPi + reciprocal * polynomial(reciprocal * reciprocal, kStirling));
+  }
+  double factor = 1;
+  while (x > 2.5) factor *= --x;
+  return natural_logarithm(factor) + logarithm_of_gamma_near_2(x - 2);
+}
+double logarithm_of_gamma(double x) {
+  if (size_of(x) > kLargestDouble) return HUGE_VAL;
+  if (x > 0) return logarithm_of_gamma_above_0(x);
+  if (truncated(x) == x) return HUGE_VAL;
+  return natural_logarithm(kPi / size_of(sine_of_half_turns(x))) - logarithm_of_gamma_above_0(1 - x);
+}
+
+/// By products from where the series holds, which are exact for whole numbers up to 23. x > 0
+double gamma_above_0(double x) {
+  if (x > 171.7) return HUGE_VAL;
+  double factor = 1;
+  while (x < 1.5) factor /= x++;
+  double from = x;
+  while (from > 2.5) --from;
+  double value = factor * exponential(logarithm_of_gamma_near_2(from - 2));
+  for (; from < x - 0.5; ++from) value *= from;
+  return value;
+}
+double gamma_function(double x) {
+  if (x > 0) return gamma_above_0(x);
+  if (x == 0) return with_sign_of(HUGE_VAL, x);
+  return truncated(x) == x ? 0 : kPi / (sine_of_half_turns(x) * gamma_above_0(1 - x));
+}
+/// What remainder_to_nearest() leaves, and the last three bits of its quotient with their sign.
+double remainder_and_quotient(double x, double y, int* quotient) {
+  const double divisor = size_of(y), rest = remainder_to_nearest(x, y);
+  *quotient = 0;
+  if (!(divisor > 0 && divisor <= kLargestDouble && size_of(x) <= kLargestDouble)) return rest;
+  // x less the multiples of 8 y, which leave no trace in those bits.
+  const double left = divisor < 0x1p1020 ? remainder_towards_zero(size_of(x), 8 * divisor) : size_of(x);
+  const int bits = static_cast<int>(nearest((left - with_sign_of(1, x) * rest) / divisor)) & 7;
+  *quotient = (bits_of(x) < 0) != (bits_of(y) < 0) ? -bits : bits;
+  return rest;
 }
 
 // ---- floats
@@ -613,16 +729,16 @@ inline float computed(float x, float y) {
 
 extern "C" {
 
-#define SC_OF_1(name, function)                           \
-  double name(double x) { return computed<function>(x); } \
-  float name##f(float x) { return computed<function>(x); }
-#define SC_OF_2(name, function)                                        \
-  double name(double x, double y) { return computed<function>(x, y); } \
-  float name##f(float x, float y) { return computed<function>(x, y); }
-// Floats of an SPU are always numbers. Doubles may be infinite, or NaN where a function has no value.
+// Floats of an SPU are always numbers. Doubles may be infinite, or NaN where an argument is NaN or a function has no value.
 #define SC_NO_NUMBER __builtin_nan("")
-#define SC_OF_1_WITHIN(name, function, outside)                                      \
-  double name(double x) { return (outside) ? SC_NO_NUMBER : computed<function>(x); } \
+#define SC_OF_1(name, function)                                           \
+  double name(double x) { return is_nan(x) ? x : computed<function>(x); } \
+  float name##f(float x) { return computed<function>(x); }
+#define SC_OF_2(name, function)                                                                         \
+  double name(double x, double y) { return is_nan(x) || is_nan(y) ? x + y : computed<function>(x, y); } \
+  float name##f(float x, float y) { return computed<function>(x, y); }
+#define SC_OF_1_WITHIN(name, function, outside)                                                   \
+  double name(double x) { return is_nan(x) || (outside) ? SC_NO_NUMBER : computed<function>(x); } \
   float name##f(float x) { return computed<function>(x); }
 #define SC_LOGARITHM(name, function, zero)                            \
   double name(double x) {                                             \
@@ -630,10 +746,21 @@ extern "C" {
     return computed<function>(x);                                     \
   }                                                                   \
   float name##f(float x) { return computed<function>(x); }
-#define SC_REMAINDER(name, function)                                                           \
-  double name(double x, double y) { return y == 0 ? SC_NO_NUMBER : computed<function>(x, y); } \
+#define SC_OF_2_WITHIN(name, function, outside)                 \
+  double name(double x, double y) {                             \
+    if (is_nan(x) || is_nan(y)) return x + y;                   \
+    return (outside) ? SC_NO_NUMBER : computed<function>(x, y); \
+  }                                                             \
   float name##f(float x, float y) { return computed<function>(x, y); }
-SC_OF_1_WITHIN(sqrt, root_of, x < 0)
+/// Of a number and NaN the number.
+#define SC_OF_2_NUMBERS(name, function)                                                                \
+  double name(double x, double y) { return is_nan(x) ? y : is_nan(y) ? x : computed<function>(x, y); } \
+  float name##f(float x, float y) { return computed<function>(x, y); }
+double sqrt(double x) {
+  if (x == 0) return x;
+  return !(x > 0) ? SC_NO_NUMBER : computed<root_of>(x);
+}
+float sqrtf(float x) { return computed<root_of>(x); }
 SC_OF_1(cbrt, cube_root)
 SC_OF_1(exp, exponential)
 SC_OF_1(exp2, exponential_of_2)
@@ -642,11 +769,14 @@ SC_LOGARITHM(log, natural_logarithm, 0)
 SC_LOGARITHM(log2, logarithm_to_2, 0)
 SC_LOGARITHM(log10, logarithm_to_10, 0)
 SC_LOGARITHM(log1p, logarithm_of_1_and, -1)
-double logb(double x) { return x == 0 ? -HUGE_VAL : computed<exponent_of>(x); }
+double logb(double x) {
+  if (x == 0) return -HUGE_VAL;
+  return is_nan(x) || size_of(x) > kLargestDouble ? size_of(x) : computed<exponent_of>(x);
+}
 float logbf(float x) { return computed<exponent_of>(x); }
-SC_OF_1(sin, sine)
-SC_OF_1(cos, cosine)
-SC_OF_1(tan, tangent)
+SC_OF_1_WITHIN(sin, sine, size_of(x) > kLargestDouble)
+SC_OF_1_WITHIN(cos, cosine, size_of(x) > kLargestDouble)
+SC_OF_1_WITHIN(tan, tangent, size_of(x) > kLargestDouble)
 SC_OF_1_WITHIN(asin, arc_sine, size_of(x) > 1)
 SC_OF_1_WITHIN(acos, arc_cosine, size_of(x) > 1)
 SC_OF_1(atan, arc_tangent)
@@ -656,10 +786,14 @@ SC_OF_1(tanh, hyperbolic_tangent)
 SC_OF_1(asinh, area_hyperbolic_sine)
 SC_OF_1_WITHIN(acosh, area_hyperbolic_cosine, x < 1)
 double atanh(double x) {
-  if (size_of(x) >= 1) return size_of(x) == 1 ? with_sign_of(HUGE_VAL, x) : SC_NO_NUMBER;
+  if (!(size_of(x) < 1)) return size_of(x) == 1 ? with_sign_of(HUGE_VAL, x) : SC_NO_NUMBER;
   return computed<area_hyperbolic_tangent>(x);
 }
 float atanhf(float x) { return computed<area_hyperbolic_tangent>(x); }
+SC_OF_1(erf, error_function)
+SC_OF_1(erfc, error_function_left)
+SC_OF_1(lgamma, logarithm_of_gamma)
+SC_OF_1_WITHIN(tgamma, gamma_function, x < 0 && truncated(x) == x)
 SC_OF_1(floor, floor_of)
 SC_OF_1(ceil, ceil_of)
 SC_OF_1(trunc, truncated)
@@ -667,15 +801,36 @@ SC_OF_1(round, rounded)
 SC_OF_1(rint, rounded_to_even)
 SC_OF_1(nearbyint, rounded_to_even)
 SC_OF_1(fabs, size_of)
-SC_OF_2(pow, power)
+double pow(double x, double y) {
+  const bool has_value = x >= 0 || x < -kLargestDouble || is_nan(x) || is_nan(y) || truncated(y) == y;
+  return has_value ? computed<power>(x, y) : SC_NO_NUMBER;
+}
+float powf(float x, float y) { return computed<power>(x, y); }
 SC_OF_2(atan2, arc_tangent_of)
-SC_OF_2(hypot, hypotenuse)
-SC_REMAINDER(fmod, remainder_towards_zero)
-SC_REMAINDER(remainder, remainder_to_nearest)
-SC_OF_2(fmin, lesser)
-SC_OF_2(fmax, greater)
+double hypot(double x, double y) {
+  if (size_of(x) > kLargestDouble || size_of(y) > kLargestDouble) return HUGE_VAL;
+  return is_nan(x) || is_nan(y) ? x + y : computed<hypotenuse>(x, y);
+}
+float hypotf(float x, float y) { return computed<hypotenuse>(x, y); }
+SC_OF_2_WITHIN(fmod, remainder_towards_zero, y == 0 || size_of(x) > kLargestDouble)
+SC_OF_2_WITHIN(remainder, remainder_to_nearest, y == 0 || size_of(x) > kLargestDouble)
+SC_OF_2_NUMBERS(fmin, lesser)
+SC_OF_2_NUMBERS(fmax, greater)
 SC_OF_2(fdim, positive_difference)
-SC_OF_2(copysign, with_sign_of)
+double copysign(double x, double y) { return with_sign_of(x, y); }
+float copysignf(float x, float y) { return computed<with_sign_of>(x, y); }
+
+double remquo(double x, double y, int* quotient) {
+  const DoubleArithmetic rounding;
+  const double rest = as_it_is_here(remainder_and_quotient(as_it_is_here(x), as_it_is_here(y), quotient));
+  if (is_nan(x) || is_nan(y)) return x + y;
+  return y == 0 || size_of(x) > kLargestDouble ? SC_NO_NUMBER : rest;
+}
+float remquof(float x, float y, int* quotient) {
+  const DoubleArithmetic rounding;
+  return as_it_is_here(
+      to_float(remainder_and_quotient(from_float(as_it_is_here(x)), from_float(y), quotient)));
+}
 
 double ldexp(double x, int exponent) {
   const DoubleArithmetic rounding;

@@ -92,6 +92,34 @@ int rand_r(unsigned int* state) {
   return static_cast<int>(next >> 33);
 }
 
+static uint64_t other_random_state = 1;
+void srandom(unsigned int seed) { other_random_state = seed; }
+long random() {
+  other_random_state = next_state(other_random_state);
+  return static_cast<long>(other_random_state >> 33);
+}
+
+// A generator of 48 bits. [POSIX, drand48]
+static uint64_t state_of_48 = 0x1234ABCD330E;
+static uint64_t next_of_48(uint64_t& state) {
+  state = (state * 0x5DEECE66D + 0xB) & 0xFFFFFFFFFFFF;
+  return state;
+}
+static uint64_t next_of_words(unsigned short state[3]) {
+  uint64_t whole = uint64_t{state[2]} << 32 | uint64_t{state[1]} << 16 | state[0];
+  next_of_48(whole);
+  for (int i = 0; i < 3; ++i) state[i] = static_cast<unsigned short>(whole >> 16 * i);
+  return whole;
+}
+static double of_unit(uint64_t bits) { return static_cast<double>(static_cast<int64_t>(bits)) * 0x1p-48; }
+void srand48(long seed) { state_of_48 = uint64_t{static_cast<uint32_t>(seed)} << 16 | 0x330E; }
+double drand48() { return of_unit(next_of_48(state_of_48)); }
+double erand48(unsigned short state[3]) { return of_unit(next_of_words(state)); }
+long lrand48() { return static_cast<long>(next_of_48(state_of_48) >> 17); }
+long nrand48(unsigned short state[3]) { return static_cast<long>(next_of_words(state) >> 17); }
+long mrand48() { return static_cast<int32_t>(next_of_48(state_of_48) >> 16); }
+long jrand48(unsigned short state[3]) { return static_cast<int32_t>(next_of_words(state) >> 16); }
+
 #ifdef SOFTCELL_CHECKED
 void __tsan_write_range(const volatile void* at, size_t bytes);  // sdk/checked
 #define SC_NOT_REPORTED __attribute__((no_sanitize("thread", "kernel-address")))

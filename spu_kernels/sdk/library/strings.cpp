@@ -117,6 +117,29 @@ char* strndup(const char* s, size_t most) {
   return copy;
 }
 
+void* mempcpy(void* to, const void* from, size_t bytes) {
+  return static_cast<char*>(memcpy(to, from, bytes)) + bytes;
+}
+void* memccpy(void* to, const void* from, int c, size_t most) {
+  const auto* const found = static_cast<const char*>(memchr(from, c, most));
+  const size_t bytes =
+      found == nullptr ? most : static_cast<size_t>(found + 1 - static_cast<const char*>(from));
+  void* const end = mempcpy(to, from, bytes);
+  return found == nullptr ? nullptr : end;
+}
+size_t strlcpy(char* to, const char* from, size_t room) {
+  const size_t length = strlen(from);
+  if (room == 0) return length;
+  const size_t bytes = length < room ? length : room - 1;
+  memcpy(to, from, bytes);
+  to[bytes] = '\0';
+  return length;
+}
+size_t strlcat(char* to, const char* from, size_t room) {
+  const size_t at = strnlen(to, room);
+  return at + strlcpy(to + at, from, room - at);
+}
+
 char* stpcpy(char* to, const char* from) { return strcpy(to, from) + strlen(from); }
 
 char* strsep(char** rest, const char* separators) {

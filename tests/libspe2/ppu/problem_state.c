@@ -7,13 +7,14 @@ extern spe_program_handle_t echoes, collects_signals, sums_its_store, pauses;
 
 static unsigned int words[256] __attribute__((aligned(128)));
 
-static unsigned int receive(volatile spe_spu_control_area_t* control) {
+/* As the SDK's samples do: by pointers to areas that are not volatile. */
+static unsigned int receive(spe_spu_control_area_t* control) {
   while ((control->SPU_Mbox_Stat & 0xFF) == 0) {
   }
   return control->SPU_Out_Mbox;
 }
 
-static void send(volatile spe_spu_control_area_t* control, unsigned int value) {
+static void send(spe_spu_control_area_t* control, unsigned int value) {
   while ((control->SPU_Mbox_Stat >> 8 & 0xFF) == 0) {
   }
   control->SPU_In_Mbox = value;
@@ -21,10 +22,10 @@ static void send(volatile spe_spu_control_area_t* control, unsigned int value) {
 
 static void ping(void) {
   spe_thread_t spe;
-  volatile spe_spu_control_area_t* control;
+  spe_spu_control_area_t* control;
   unsigned int i, doubled;
   start_spe(&spe, &echoes, SPE_MAP_PS, NULL, NULL);
-  control = (volatile spe_spu_control_area_t*)spe_ps_area_get(spe.context, SPE_CONTROL_AREA);
+  control = (spe_spu_control_area_t*)spe_ps_area_get(spe.context, SPE_CONTROL_AREA);
   CHECK(control != NULL);
   for (i = 1; i <= 20; ++i) {
     send(control, i);
@@ -53,11 +54,11 @@ static void signal_it(void) {
 static void transfer(void) {
   spe_thread_t spe;
   volatile spe_mfc_command_area_t* mfc;
-  volatile spe_spu_control_area_t* control;
+  spe_spu_control_area_t* control;
   unsigned int i, expected = 0, place;
   start_spe(&spe, &sums_its_store, SPE_MAP_PS, NULL, NULL);
   mfc = (volatile spe_mfc_command_area_t*)spe_ps_area_get(spe.context, SPE_MFC_COMMAND_AREA);
-  control = (volatile spe_spu_control_area_t*)spe_ps_area_get(spe.context, SPE_CONTROL_AREA);
+  control = (spe_spu_control_area_t*)spe_ps_area_get(spe.context, SPE_CONTROL_AREA);
   place = receive(control);
   for (i = 0; i < 256; ++i) expected += words[i] = i * i;
   do {

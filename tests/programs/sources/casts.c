@@ -1,5 +1,6 @@
 /* Which parentheses are a cast between vectors: through names of types, in every kind of function, of every kind of operand. */
 #include <spu_intrinsics.h>
+#include <vec_literal.h>
 
 #include "check.h"
 
@@ -140,7 +141,40 @@ static void channels(void) {
   CHECK(spu_readch(SPU_RdEventMask) == 2);
 }
 
+/* Static data begin with literals of either spelling, const or not, in as many parentheses as macros have, also of the SDK's headers. */
+#define SPLAT_BYTES(n) ((vec_uchar16){n, n, n, n, n, n, n, n, n, n, n, n, n, n, n, n})
+struct packet {
+  vector unsigned int words;
+  int count;
+  vector unsigned char bytes[2];
+};
+static vector unsigned char places = ((vec_uchar16){3, 1, 4, 1, 5, 9});
+static const vec_float4 point = (vec_float4){1, 2, 3, 4}, other = ((vector float){5, 6, 7, 8});
+const vector float points[3] = {((vec_float4){1, 2, 3, 4}), (vector float){5, 6, 7, 8}, (vec_float4)(9, 10, 11, 12)};
+static const struct packet packet = {(vec_uint4){1, 2, 3, 4}, 5, {SPLAT_BYTES(7), (((vec_uchar16){8}))}};
+static struct packet named = {.count = 9, .words = (vec_uint4){10, 11, 12, 13}};
+static const vector unsigned int ones = VEC_SPLAT_U32(1), counted_ones = VEC_LITERAL(vec_uint4, 1, 2, 3, 4);
+
+static vec_uint4 added(vec_uint4 v) {
+  static const vec_uint4 hundreds = ((vec_uint4){100, 200, 300, 400});
+  static vec_uint4 calls = (vector unsigned int){0, 0};
+  vec_uint4 result;
+  result = (vec_uint4){1, 2, 3, 4};
+  calls += (vec_uint4){1};
+  return result + v + hundreds + calls;
+}
+
+static void static_literals(void) {
+  const vector unsigned char here = ((vec_uchar16){6});
+  CHECK(places[5] == 9 && places[6] == 0 && point[3] == 4 && other[0] == 5 && here[0] == 6);
+  CHECK(points[0][1] == 2 && points[1][2] == 7 && points[2][3] == 12);
+  CHECK(packet.words[2] == 3 && packet.count == 5 && packet.bytes[0][15] == 7 && packet.bytes[1][0] == 8);
+  CHECK(named.count == 9 && named.words[3] == 13 && ones[3] == 1 && counted_ones[2] == 3);
+  CHECK(added(ones)[0] == 103 && added(ones)[0] == 104 && added(ones)[3] == 405);
+}
+
 int main(void) {
+  static_literals();
   names();
   types_of_values();
   members();

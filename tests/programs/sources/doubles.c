@@ -96,7 +96,47 @@ static void exact_results(void) {
   }
 }
 
+static void error_and_gamma_functions(void) {
+  volatile double x = 1;
+  int i, quotient;
+  CHECK(near(erf(0.5), 0.5204998778130465) && near(erf(-3), -0.9999779095030014) && erf(30) == 1 && erf(-0.0) == 0);
+  CHECK(near(erfc(0.5), 0.4795001221869535) && near(erfc(-1), 1.842700792949715) && erfc(40) == 0);
+  CHECK(near(erfc(5) * 1e12, 1.5374597944280349) && near(erfc(25) * 1e273, 0.8300172571196522));
+  CHECK(near(tgamma(0.5), 1.772453850905516) && near(tgamma(-1.5), 2.3632718012073544) && near(tgamma(170) * 1e-304, 4.269068009004706));
+  CHECK(tgamma(172) == HUGE_VAL && tgamma(0.0) == HUGE_VAL && tgamma(-0.0) == -HUGE_VAL && is_none(tgamma(-3)));
+  CHECK(near(lgamma(0.1), 2.252712651734206) && near(lgamma(100), 359.1342053695754) && near(lgamma(-0.5), 1.2655121234846454));
+  CHECK(lgamma(1) == 0 && lgamma(2) == 0 && near(lgamma(1 + 0x1p-20) * 0x1p20, -0.5772148805362114) && lgamma(0) == HUGE_VAL && lgamma(-4) == HUGE_VAL);
+  for (i = 1; i <= 23; ++i) {
+    CHECK(tgamma(i) == x);
+    x *= i;
+  }
+  CHECK(remquo(29, 3, &quotient) == -1 && (quotient & 7) == 2 && remquo(-7, 2, &quotient) == 1 && quotient == -4);
+  CHECK(remquo(1e308, 1e300, &quotient) == remainder(1e308, 1e300) && remquof(10, 3, &quotient) == 1 && quotient == 3);
+  CHECK(remainder(1e308, 1e300) == -4.1525696625763965e+291);
+  CHECK(is_none(nan("")) && nanf("") != 0);
+  CHECK(isgreater(x, 1) && islessequal(1.0, x) && isunordered(x, NAN) && !isless(x, NAN) && !isgreaterequal(1.0, x) && islessgreater(1.0, x));
+}
+
+/* What is no number stays none, and infinite arguments have the results of ISO C, annex F. */
+static void beyond_numbers(void) {
+  volatile double n = NAN, inf = HUGE_VAL, zero = -0.0, eight = -8;
+  CHECK(is_none(sqrt(n)) && is_none(exp(n)) && is_none(exp2(n)) && is_none(expm1(n)) && is_none(sin(n)) && is_none(sinh(n)) && is_none(cosh(n)));
+  CHECK(is_none(asinh(n)) && is_none(acosh(n)) && is_none(atanh(n)) && is_none(logb(n)) && is_none(tgamma(n)) && is_none(erf(n)) && is_none(floor(n)));
+  CHECK(is_none(sin(inf)) && is_none(cos(-inf)) && is_none(tan(inf)) && log2(inf) == inf && log1p(inf) == inf && logb(-inf) == inf);
+  CHECK(is_none(pow(eight, 1.0 / 3)) && pow(-inf, 2.5) == inf && pow(-1, inf) == 1 && pow(zero, -3) == -inf && pow(1, n) == 1);
+  CHECK(is_none(fmod(inf, 2)) && is_none(fmod(1, n)) && is_none(remainder(inf, 2)) && is_none(remainder(n, 2)) && fmod(3, inf) == 3);
+  CHECK(fmin(n, 1) == 1 && fmin(1, n) == 1 && fmax(n, 1) == 1 && fmax(1, n) == 1 && is_none(fdim(n, 1)) && is_none(fdim(1, n)));
+  CHECK(hypot(inf, n) == inf && is_none(hypot(1, n)) && near(atan2(inf, inf), M_PI_4) && near(atan2(-inf, -inf), -3 * M_PI_4) && is_none(atan2(n, 1)));
+  CHECK(signbit(sqrt(zero)) && signbit(sin(zero)) && signbit(tan(zero)) && exp(-inf) == 0);
+  /* The last that are doubles. */
+  n = 709.5, inf = 1023.75;
+  CHECK(near(exp(n) * 1e-300, 135498631.93146328) && near(exp2(inf) * 1e-300, 151167371.28319339) && exp2(1024) == HUGE_VAL && exp(710) == HUGE_VAL);
+  CHECK(near(sinh(n + 0.75) * 1e-300, 143425303.02495123) && near(cosh(-n) * 1e-300, 67749315.96573164));
+}
+
 int main(void) {
+  error_and_gamma_functions();
+  beyond_numbers();
   functions();
   exact_results();
   parts();

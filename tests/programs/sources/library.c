@@ -108,12 +108,43 @@ static void heap(void) {
   char* const again = malloc(200000);
   CHECK(again != NULL);
   free(again);
+  unsigned char bytes[40] = {0};
+  int place;
+  for (place = 0; place < 20; ++place) {
+    store_vec_unaligned(bytes + place, ((vec_uchar16){7, 8, 9}));
+    CHECK(bytes[place + 2] == 9 && bytes[place + 3] == 0 && spu_extract(load_vec_unaligned(bytes + place + 1), 0) == 8);
+  }
   char* const aligned = malloc_align(300, 7);
   CHECK(((uintptr_t)aligned & 127) == 0);
   char* const grown = realloc(calloc(4, 4), 64);
   CHECK(grown != NULL && grown[0] == 0 && grown[15] == 0);
   free(grown);
   free_align(aligned);
+}
+
+/* As POSIX defines them, a PC has the same. */
+static void random_numbers(void) {
+  unsigned short state[3] = {0x330E, 1, 0};
+  int i;
+  srand48(1);
+  CHECK(drand48() == 0x0.0aa849495101p0 && lrand48() == 976015093);
+  CHECK(erand48(state) == 0x0.0aa849495101p0 && nrand48(state) == 976015093 && jrand48(state) == (long)3585512650u && state[2] == 0xD5B6);
+  srand48(2009);
+  CHECK(mrand48() == -1663586239 && mrand48() == 1168852354);
+  srandom(5);
+  const long first = random();
+  for (i = 0; i < 100; ++i) CHECK(random() >= 0);
+  srandom(5);
+  CHECK(random() == first);
+}
+
+static void copies(void) {
+  char text[8] = "";
+  CHECK(strlcpy(text, "abc", sizeof text) == 3 && strlcat(text, "defghijk", sizeof text) == 11 && strcmp(text, "abcdefg") == 0);
+  CHECK(strlcpy(text, "abc", 0) == 3 && text[0] == 'a' && strlcat(text, "x", 3) == 4);
+  CHECK(memccpy(text, "12;34", ';', 5) == text + 3 && text[3] == 'd' && memccpy(text, "12", ';', 2) == NULL);
+  CHECK(mempcpy(text, "xy", 2) == text + 2 && text[1] == 'y' && ffs(0) == 0 && ffs(0x50) == 5);
+  CHECK(isascii('a') && !isascii(200) && toascii(200) == 72);
 }
 
 static char* written(const char* format, ...) {
@@ -198,6 +229,8 @@ static void output(void) {
 }
 
 int main(int argc, char** argv) {
+  random_numbers();
+  copies();
   assert(failures == 0);
   strings();
   numbers();

@@ -124,6 +124,11 @@ void headers_of_c_are_in_std() {
   int exponent = 0;
   CHECK(std::ldexp(two, 3) == 16 && std::frexp(two, &exponent) == 0.5f && exponent == 2 &&
         std::lround(2.5f) == 3);
+  int quotient;
+  static_assert(kSame<decltype(std::erf(1.0f)), float> && kSame<decltype(std::tgamma(1)), double>);
+  CHECK(std::tgamma(5) == 24 && std::erf(0.0f) == 0 && std::remquo(7.0f, 2.0f, &quotient) == -1 &&
+        quotient == 4);
+  CHECK(std::isgreater(three, two) && isless(two, 3) && !std::isunordered(two, three));
   CHECK(!std::isnan(two) && isfinite(three) && std::signbit(-two) && std::fpclassify(two) == FP_NORMAL &&
         std::isfinite(4));
   CHECK(std::fma(two, three, 1.0f) == 7 && std::fma(2.0, 3.0, 1.0) == 7 && std::nextafter(two, 9.0f) > two);

@@ -68,8 +68,10 @@ std::optional<DebugStop> DebugSession::stop_at(int spe, std::uint32_t pc) {
   }
   if (accessed) return DebugStop{.kind = DebugStop::kWatchpoint, .spe = spe, .watchpoint = *accessed};
   if (breakpoints_[pc / 4]) return DebugStop{.kind = DebugStop::kBreakpoint, .spe = spe};
-  if (goal_.kind == Goal::kStepOf && goal_.spe == spe) return DebugStop{.kind = DebugStop::kStep, .spe = spe};
-  return std::nullopt;
+  if (goal_.kind != Goal::kStepOf) return std::nullopt;
+  if (goal_.spe == spe && std::exchange(goal_.must_begin, false)) return std::nullopt;
+  if (goal_.spe != spe && !has_ended(goal_.spe)) return std::nullopt;
+  return DebugStop{.kind = DebugStop::kStep, .spe = spe};
 }
 
 void DebugSession::on_access(int spe, dma::LocalStoreAddress quadword, bool is_store) {
@@ -100,6 +102,7 @@ void DebugSession::begin(const Goal& goal) {
   abandoned_ = false;
   count_ = 0;
   states_ = {};
+  ended_ = {};
   positions_.fill(image_.entry);
   accessed_.reset();
   goal_ = goal;
@@ -159,7 +162,9 @@ DebugStop DebugSession::go_on(const Interrupted& interrupted) {
   return back_before_a_fault(run_to({.kind = Goal::kStops}, interrupted), interrupted);
 }
 DebugStop DebugSession::step(int spe, const Interrupted& interrupted) {
-  return back_before_a_fault(run_to({.kind = Goal::kStepOf, .spe = spe}, interrupted), interrupted);
+  SC_ASSERT(!has_ended(spe), "a step of SPE {}, which has ended", spe);
+  return back_before_a_fault(
+      run_to({.kind = Goal::kStepOf, .spe = spe, .must_begin = !is_running(spe)}, interrupted), interrupted);
 }
 
 /// Once a run has ended, its registers and local stores are gone. After a fault the user wants to see them, so the session goes back there.
@@ -215,7 +220,15 @@ std::vector<std::byte> DebugSession::read_memory(int spe, std::uint32_t address,
   SC_ASSERT(address <= dma::kLocalStoreBytes && bytes <= dma::kLocalStoreBytes - address, "{} bytes at {}",
             bytes, address);
   auto* const state = states_[index(spe)];
-  if (state == nullptr) return std::vector<std::byte>(bytes);
+  if (state == nullptr) {
+    std::vector<std::byte> loaded(bytes);
+    const std::uint32_t end = image_.begin + static_cast<std::uint32_t>(image_.bytes.size());
+    const std::uint32_t from = std::max(address, image_.begin), to = std::min(address + bytes, end);
+    if (from < to)
+      std::copy(image_.bytes.begin() + (from - image_.begin), image_.bytes.begin() + (to - image_.begin),
+                loaded.begin() + (from - address));
+    return loaded;
+  }
   const auto part = state->local_store().subspan(address, bytes);
   return {part.begin(), part.end()};
 }

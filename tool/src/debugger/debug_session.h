@@ -56,7 +56,8 @@ class DebugSession final : private ls_sim::Debugger {
   // A program that fails stops twice: first before the last instruction of the run (kFault), and when it goes on from there, at its end
   // (kEnded).
   DebugStop go_on(const Interrupted& interrupted);
-  /// Executes one instruction of this SPE; other SPEs may execute some meanwhile.
+  /// Executes one instruction of this SPE; other SPEs may execute some meanwhile. If that is its last one, the next SPE stops.
+  /// @pre  !has_ended(spe)
   DebugStop step(int spe, const Interrupted& interrupted);
   /// Goes back to the last stop before this instruction; if there is none, to the beginning.
   DebugStop go_back(const Interrupted& interrupted);
@@ -72,12 +73,15 @@ class DebugSession final : private ls_sim::Debugger {
   int spes() const { return task_.spes; }
   /// Whether an SPE runs: false before its first instruction and after its end.
   bool is_running(int spe) const { return states_[index(spe)] != nullptr; }
+  /// An SPE begins with its first turn.
+  bool has_ended(int spe) const { return ended_[index(spe)]; }
   /// The address of the instruction that the SPE is at: the next one, or one that waits.
   std::uint32_t position(int spe) const { return positions_[index(spe)]; }
   ls_sim::RegisterBytes read_register(int spe, int number) const;
   /// These functions do nothing for an SPE that does not run.
   void write_register(int spe, int number, const ls_sim::RegisterBytes& value);
   /// @pre the range lies in the local store
+  /// Of an SPE that has not begun, what its image has there.
   std::vector<std::byte> read_memory(int spe, std::uint32_t address, std::uint32_t bytes) const;
   void write_memory(int spe, std::uint32_t address, const std::vector<std::byte>& bytes);
   /// The number of the next instruction; the first one has number 1.
@@ -100,13 +104,17 @@ class DebugSession final : private ls_sim::Debugger {
     Kind kind = kStops;
     int spe = 0;
     std::uint64_t number = 0;
+    bool must_begin = false;  ///< kStepOf: the SPE's first instruction is the one to be executed
   };
 
   static std::size_t index(int spe) { return static_cast<std::size_t>(spe); }
 
   // ls_sim::Debugger; the threads of SPEs call these, one at a time.
   void on_begin(int spe, ls_sim::DebuggedSpe& state) override { states_[index(spe)] = &state; }
-  void on_end(int spe) override { states_[index(spe)] = nullptr; }
+  void on_end(int spe) override {
+    states_[index(spe)] = nullptr;
+    ended_[index(spe)] = true;
+  }
   bool on_instruction(int spe, dma::LocalStoreAddress pc) override;
   void on_access(int spe, dma::LocalStoreAddress quadword, bool is_store) override;
 
@@ -128,6 +136,7 @@ class DebugSession final : private ls_sim::Debugger {
 
   // The SPEs' threads use these while they run, and the session's thread while they stand still.
   std::array<ls_sim::DebuggedSpe*, dma::kSpeCount> states_{};
+  std::array<bool, dma::kSpeCount> ended_{};
   std::array<std::uint32_t, dma::kSpeCount> positions_{};
   std::uint64_t count_ = 0;
   std::uint64_t shown_fault_ = 0;  ///< the instruction that the last kFault stood before; 0: none

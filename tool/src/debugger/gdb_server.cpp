@@ -107,7 +107,8 @@ std::string GdbServer::answer(const std::string& packet) {
       return select_thread(rest);
     case 'T': {
       const auto thread = number_of(rest);
-      return thread && *thread >= 1 && static_cast<int>(*thread) <= session_.spes() ? kOk : kBadRequest;
+      const bool exists = thread && *thread >= 1 && static_cast<int>(*thread) <= session_.spes();
+      return exists && !session_.has_ended(static_cast<int>(*thread) - 1) ? kOk : kBadRequest;
     }
     case 'g':
       return read_registers();
@@ -149,17 +150,20 @@ std::string GdbServer::about(std::string_view query) {
   if (query == "qAttached") return "1";
   if (query == "qC") return fmt::format("QC{:x}", spe_ + 1);
   if (query == "qfThreadInfo") {
-    std::string threads = "m";
+    std::string threads;
     for (int spe = 0; spe < session_.spes(); ++spe)
-      threads += fmt::format("{}{:x}", spe == 0 ? "" : ",", spe + 1);
-    return threads;
+      if (!session_.has_ended(spe)) threads += fmt::format("{}{:x}", threads.empty() ? "m" : ",", spe + 1);
+    return threads.empty() ? "l" : threads;
   }
   if (query == "qsThreadInfo") return "l";
   if (query.starts_with("qThreadExtraInfo,")) {
     const auto thread = number_of(query.substr(query.find(',') + 1));
     if (!thread || *thread < 1 || static_cast<int>(*thread) > session_.spes()) return kBadRequest;
     const int spe = static_cast<int>(*thread) - 1;
-    return hexadecimal_of(fmt::format("SPE {}{}", spe, session_.is_running(spe) ? "" : ", not running"));
+    return hexadecimal_of(fmt::format("SPE {}{}", spe,
+                                      session_.is_running(spe)  ? ""
+                                      : session_.has_ended(spe) ? ", has ended"
+                                                                : ", has not begun"));
   }
   constexpr std::string_view kFeatures = "qXfer:features:read:target.xml:";
   if (query.starts_with(kFeatures)) return features(query.substr(kFeatures.size()));
@@ -237,7 +241,7 @@ std::string GdbServer::write_register(std::string_view text) {
 
 std::string GdbServer::read_memory(std::string_view text) const {
   const auto range = range_of(text);
-  if (!range || !session_.is_running(spe_)) return kBadRequest;
+  if (!range || session_.has_ended(spe_)) return kBadRequest;
   return hexadecimal_of(
       text_of(session_.read_memory(spe_, range->first, std::min(range->second, kMostMemoryBytes))));
 }
@@ -283,6 +287,7 @@ std::string GdbServer::resume(std::string_view action) {
   if (action == "c") {
     stop_ = session_.go_on(interrupted());
   } else if (action == "s") {
+    if (session_.has_ended(spe_)) return kNotPossible;
     stop_ = session_.step(spe_, interrupted());
   } else if (action == "bc") {
     stop_ = session_.go_back(interrupted());

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 #include <charconv>
-#include <cmath>
 #include <optional>
 #include <set>
 
@@ -146,14 +145,6 @@ std::uint32_t parse_mbox_value(const std::string& text) {
   if (!value || *value > 0xFFFF'FFFF)
     throw UsageError("--in-mbox " + text + ": give a number from 0 to 0xFFFFFFFF");
   return static_cast<std::uint32_t>(*value);
-}
-
-std::chrono::milliseconds parse_deadline(const std::string& text) {
-  constexpr double kMostSeconds = 86'400;
-  const auto seconds = parse_real<double>(text);
-  if (!seconds || !(*seconds >= 0.001) || *seconds > kMostSeconds)
-    throw UsageError("--deadline " + text + ": give seconds from 0.001 to 86400");
-  return std::chrono::milliseconds(std::lround(*seconds * 1000));
 }
 
 std::vector<NamedFile> written_files(const KernelTask& task) {

@@ -75,9 +75,6 @@ ArgumentSpec parse_argument(const std::string& text);
 /// A 32-bit number of --in-mbox.
 std::uint32_t parse_mbox_value(const std::string& text);
 
-/// "2.5": seconds, positive.
-std::chrono::milliseconds parse_deadline(const std::string& text);
-
 /// The files of --out and --inout.
 std::vector<NamedFile> written_files(const KernelTask& task);
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <chrono>
 #include <map>
 #include <stdexcept>
 #include <utility>
@@ -14,6 +15,7 @@
 #include "run_report.h"
 #include "softcell/base/assert.h"
 #include "softcell/base/whole_file.h"
+#include "verb/deadline.h"
 #include "verb/exit_status.h"
 #include "verb/interrupt.h"
 #include "verb/output_files.h"
@@ -23,9 +25,8 @@
 namespace softcell::tool {
 namespace {
 
-constexpr std::uint64_t kMaxDeadline = 4'000'000;
 /// Default when SPEs take turns: one that reads its local store until another one has written there would keep the turn for ever.
-constexpr std::uint64_t kDeadlineOfTurns = 30'000;
+constexpr std::chrono::seconds kDeadlineOfTurns{30};
 
 /// The path of a library that is loaded before those of the program.
 std::string library_for(const char* option, const std::string& name) {
@@ -52,9 +53,10 @@ std::string preloaded(const RunOptions& options) {
   return libraries;
 }
 
-/// Milliseconds; 0: none.
-std::uint64_t deadline_of(const RunOptions& options) {
-  return options.deadline_ms.value_or(options.turns ? kDeadlineOfTurns : 0);
+/// 0: none.
+std::chrono::milliseconds deadline_of(const RunOptions& options) {
+  if (!options.deadline.empty()) return parse_deadline(options.deadline);
+  return options.turns ? kDeadlineOfTurns : std::chrono::seconds(0);
 }
 
 std::map<std::string, std::string> variables_of(const RunOptions& options) {
@@ -62,7 +64,7 @@ std::map<std::string, std::string> variables_of(const RunOptions& options) {
       {"SOFTCELL_DMA", options.dma},
       {"SOFTCELL_TURNS", options.turns ? "1" : "0"},
       {"SOFTCELL_CHECKED", options.checked ? "1" : "0"},
-      {"SOFTCELL_DEADLINE_MS", std::to_string(deadline_of(options))}};
+      {"SOFTCELL_DEADLINE_MS", std::to_string(deadline_of(options).count())}};
   if (const std::string libraries = preloaded(options); !libraries.empty())
     variables["LD_PRELOAD"] = libraries;
   return variables;
@@ -75,7 +77,7 @@ std::string options_of_outcome(const RunOptions& options) {
   if (options.checked) words += " --checked";
   if (options.allocations) words += " --allocations";
   if (options.low_memory) words += " --low-memory";
-  if (options.deadline_ms) words += fmt::format(" --deadline {}", *options.deadline_ms);
+  if (!options.deadline.empty()) words += " --deadline " + options.deadline;
   return words;
 }
 
@@ -165,7 +167,8 @@ int run_one(const RunOptions& options, const InterruptGuard& guard, Output& json
   const ProgramRun run = run_once(options, guard);
   for (const std::string& finding : run.unsaid_findings)
     fmt::print(stderr, "softcell: finding: {}\n", finding);
-  fmt::print(stderr, "softcell: {} {}; {}\n", options.words.front(), run.ending(), run.summary());
+  if (!options.quiet || run.exit_status() != 0)
+    fmt::print(stderr, "softcell: {} {}; {}\n", options.words.front(), run.ending(), run.summary());
   const bool lacks_trace = trace.file != nullptr && run.traces.empty();
   const bool has_trace = trace.file != nullptr && !lacks_trace;
   if (has_trace) {
@@ -228,7 +231,7 @@ int run_many(const RunOptions& options, const InterruptGuard& guard, Output& jso
                "softcell: the outcome depends on the order of transfers or SPEs; see it again with softcell "
                "run {} -- {}\n",
                options_of_outcome(seeded), quoted_for_shell(options.words));
-  } else {
+  } else if (!options.quiet || first.exit_status() != 0) {
     fmt::print(stderr, "softcell: {} seeds: {} {} under each, with the same output; {}\n", seed,
                options.words.front(), first.ending(), first.summary());
   }
@@ -263,17 +266,17 @@ class RunVerb final : public Verb {
         "--low-memory", options_.low_memory,
         "Keep all memory of the program below 4 GB, for code that keeps pointers in 32 bits; the program "
         "must be linked with -no-pie");
-    accept_whole_number(r->add_option("--deadline", options_.deadline_ms,
-                                      "End a run of an SPE context that takes longer (milliseconds; default: "
-                                      "none, and 30000 with --turns or --seeds)"),
-                        1, kMaxDeadline)
-        ->type_name("MS");
+    r->add_option(
+         "--deadline", options_.deadline,
+         "Seconds after which a run of an SPE context is stopped with a fault, 0.001 to 86400 (default: "
+         "none, and 30 with --turns or --seeds)")
+        ->type_name("SECONDS");
     CLI::Option* seeds = accept_whole_number(
         r->add_option("--seeds", options_.seeds,
                       "Run it under random:1 to random:SEEDS with --turns; all must have the same outcome"),
         1, kMaxSeeds);
     seeds->type_name("SEEDS");
-    r->add_flag("--quiet", options_.quiet, "No progress bar");
+    r->add_flag("--quiet", options_.quiet, "Print errors only, besides the program's own output");
     add_trace_option(*r, options_.trace);
     add_json_option(*r, options_.json, "how it ended, statistics, findings and faults");
     r->callback([this, r, &chosen] {
@@ -290,6 +293,7 @@ class RunVerb final : public Verb {
 
 int run_program(const RunOptions& options) {
   static_cast<void>(parse_dma(options.dma));
+  static_cast<void>(deadline_of(options));
   if (options.seeds != 0 && options.trace)
     throw UsageError("--trace with --seeds: trace one of the runs, with --dma random:SEED --turns");
   if (options.seeds != 0 && (options.dma_is_given || options.dma != "eager"))

@@ -17,8 +17,8 @@ struct RunOptions {
   std::string dma = "eager";
   bool dma_is_given = false;  ///< on the command line
   bool turns = false, checked = false, allocations = false, low_memory = false, quiet = false;
-  std::optional<std::uint64_t> deadline_ms = {};  ///< none: the default for `turns` and `seeds`
-  std::uint64_t seeds = 0;                        ///< 0: one run
+  std::string deadline;     ///< seconds; empty: the default for `turns` and `seeds`
+  std::uint64_t seeds = 0;  ///< 0: one run
   std::optional<std::filesystem::path> trace, json;
 };
 

@@ -3,6 +3,7 @@
 #include "command_line/shared_options.h"
 #include "command_line/shell_words.h"
 #include "softcell/dma/addresses.h"
+#include "verb/deadline.h"
 
 namespace softcell::tool {
 

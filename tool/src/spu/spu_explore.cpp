@@ -103,6 +103,7 @@ class Explorer {
       return;
     }
     if (differences_.empty()) {
+      if (options_.quiet && exit_status() == 0) return;
       fmt::print("kernel {}: the same outcome under {} seed{}{}\n", image_.name, tried_,
                  tried_ == 1 ? "" : "s", exit_status() == 0 ? "" : ", and every run failed or had findings");
       return;

@@ -92,7 +92,7 @@ class SpuVerbs final : public Verb {
                                       "Orders to try: --dma random:1 to random:SEEDS (default: 100)"),
                         1, kMaxSeeds)
         ->type_name("SEEDS");
-    e->add_flag("--quiet", explore_.quiet, "No progress bar");
+    e->add_flag("--quiet", explore_.quiet, "Print errors only");
     add_json_option(*e, explore_.json, "the result");
     e->callback([&] {
       chosen = [this] {

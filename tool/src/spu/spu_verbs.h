@@ -58,7 +58,7 @@ struct SpuExploreOptions {
   KernelTask task;
   std::string task_text;  ///< the options that make the task, for repeating it
   std::uint64_t seeds = 100;
-  bool quiet = false;  ///< no progress, even on a terminal
+  bool quiet = false;  ///< print errors only
   std::optional<std::filesystem::path> json;
 };
 

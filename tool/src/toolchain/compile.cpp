@@ -111,28 +111,26 @@ void compile_build(const Input& source, const std::filesystem::path& object, boo
     if (source.file == kStandardInput) lseek(STDIN_FILENO, 0, SEEK_SET);
     if (const int status = run(command, checked); status != 0) throw Failed{status};
   };
+  const bool is_cxx = *source.language == Language::kCxx;
   Words command = command_of(*source.language, checked, options, places);
-  if (*source.language == Language::kCxx) {
-    append(command, preprocessor);
-    append(command, options.compiler);
-    append(command, {"-c", source.file, "-o", object.string()});
-    return go(command);
-  }
   // A program's own system headers are rewritten as its other ones are. softcell's headers stay as they are.
   Words words = preprocessor;
   const Words system_folders = extract_system_folders(words);
   append(command, words);
   for (const std::string& folder : system_folders) append(command, {"-I", folder});
   append(command, options.compiler);
-  // Between preprocessor and compiler, another program gives casts of vectors the meaning that they have on an SPU.
+  // Between preprocessor and compiler, another program gives casts of vectors the meaning that they have on an SPU, and in C++ the spelling
+  // of vectors that of the host.
   const std::string text = scratch.file("source.i"), rewritten = scratch.file("rewritten.i");
   append(command, {"-E", source.file, "-o", text});
   go(command);
-  Words rewrite{places.vector_casts.string(), text, rewritten};
+  Words rewrite{places.vector_casts.string()};
+  if (is_cxx) rewrite.push_back("--c++");
+  append(rewrite, {text, rewritten});
   append(rewrite, system_folders);
   go(rewrite);
-  command = command_of(Language::kC, checked, options, places);
-  command[2] = "cpp-output";
+  command = command_of(*source.language, checked, options, places);
+  command[2] = is_cxx ? "c++-cpp-output" : "cpp-output";
   append(command, options.compiler);
   append(command, flags_of(settings::kCRewrittenFlags, places));
   append(command, {"-c", rewritten, "-o", object.string()});

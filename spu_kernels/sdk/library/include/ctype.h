@@ -18,4 +18,6 @@ int isupper(int c_);
 int isxdigit(int c_);
 int tolower(int c_);
 int toupper(int c_);
+static __inline__ __attribute__((unused)) int isascii(int c_) { return (c_ & ~0x7F) == 0; }
+static __inline__ __attribute__((unused)) int toascii(int c_) { return c_ & 0x7F; }
 __END_DECLS

@@ -8,7 +8,8 @@
 //
 // Of double functions sqrt(), pow(), log10() and hypot() err by at most 0.52 units in the last place, so that results that are whole
 // numbers are exact. The others have some twelve digits; sin(), cos() and tan() of doubles from 2^20 on take the first 24 bits of their
-// argument. There are no erf() and no gamma functions.
+// argument. lgamma() of negative numbers, and its float twin, have twelve digits behind the point. NaN, infinities and zeros as
+// arguments of double functions have the results of annex F.
 
 #include <sys/cdefs.h>
 
@@ -41,6 +42,12 @@
 #define isnan(x) __builtin_isnan(x)
 #define isnormal(x) __builtin_isnormal(x)
 #define signbit(x) __builtin_signbit(x)
+#define isgreater(x, y) __builtin_isgreater(x, y)
+#define isgreaterequal(x, y) __builtin_isgreaterequal(x, y)
+#define isless(x, y) __builtin_isless(x, y)
+#define islessequal(x, y) __builtin_islessequal(x, y)
+#define islessgreater(x, y) __builtin_islessgreater(x, y)
+#define isunordered(x, y) __builtin_isunordered(x, y)
 
 __BEGIN_DECLS
 #define SC_FUNCTION_OF_1(name) \
@@ -71,6 +78,10 @@ SC_FUNCTION_OF_1(tanh)
 SC_FUNCTION_OF_1(asinh)
 SC_FUNCTION_OF_1(acosh)
 SC_FUNCTION_OF_1(atanh)
+SC_FUNCTION_OF_1(erf)
+SC_FUNCTION_OF_1(erfc)
+SC_FUNCTION_OF_1(lgamma)
+SC_FUNCTION_OF_1(tgamma)
 SC_FUNCTION_OF_1(floor)
 SC_FUNCTION_OF_1(ceil)
 SC_FUNCTION_OF_1(trunc)
@@ -110,6 +121,17 @@ long lroundf(float x_);
 long lround(double x_);
 long long llroundf(float x_);
 long long llround(double x_);
+/// NaN; the text is not looked at.
+static __inline__ __attribute__((unused)) double nan(const char* text) {
+  (void)text;
+  return __builtin_nan("");
+}
+static __inline__ __attribute__((unused)) float nanf(const char* text) {
+  (void)text;
+  return NAN;
+}
+double remquo(double x_, double y_, int* quotient);
+float remquof(float x_, float y_, int* quotient);
 float modff(float x_, float* whole);
 double modf(double x_, double* whole);
 __END_DECLS

@@ -58,6 +58,18 @@ double atof(const char* text);
 int rand(void);
 int rand_r(unsigned int* state);
 void srand(unsigned int seed);
+/// As rand(), with a state of its own.
+long random(void);
+void srandom(unsigned int seed);
+/// POSIX defines these numbers, so that they are those of a PC, too: doubles in [0, 1), longs from 0 or from -2^31 on. Those with a
+/// state use that, the others share one.
+double drand48(void);
+double erand48(unsigned short state[3]);
+long lrand48(void);
+long nrand48(unsigned short state[3]);
+long mrand48(void);
+long jrand48(unsigned short state[3]);
+void srand48(long seed);
 
 /// Heapsort: no memory and no recursion. Equal elements may change places.
 void qsort(void* array, size_t count, size_t bytes, int (*compare)(const void*, const void*));

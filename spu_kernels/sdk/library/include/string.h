@@ -33,6 +33,13 @@ char* strndup(const char* s_, size_t most);
 /// @return  the end of the copy
 char* stpcpy(char* to, const char* from);
 char* strsep(char** rest, const char* separators);
+/// @return  behind what was written
+void* mempcpy(void* to, const void* from, size_t bytes);
+/// Copies up to a character, which it copies, too. @return  behind the copy of that character, or null
+void* memccpy(void* to, const void* from, int c_, size_t most);
+/// Copies and appends what there is room for, always with a zero behind. @return  the length that needs no more room
+size_t strlcpy(char* to, const char* from, size_t room);
+size_t strlcat(char* to, const char* from, size_t room);
 void bzero(void* to, size_t bytes);
 void bcopy(const void* from, void* to, size_t bytes);
 /// Of a number in errno.h.
