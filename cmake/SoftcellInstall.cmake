@@ -7,6 +7,7 @@
 #   include/libspe2.h, lib/libspe2.so      target softcell::libspe2                                [development]
 #   include/softcell/libspe2/              headers of libsync's functions one by one               [development]
 #   include/softcell/psl1ght/, share/softcell/psl1ght/  target softcell::psl1ght; what its Makefiles include [development]
+#   share/softcell/cell/buildutils/        what Makefiles of SDK projects include [development]
 #   bin/softcell-spu-*, softcell-embedspu, softcell-bin2s, lib/softcell/  the commands of a toolchain   [development]
 #   lib/libsoftcell_<library>.a            targets softcell::<library>                             [development]
 #   lib/cmake/softcell/                    the package                                             [development]
@@ -71,6 +72,7 @@ macro(softcell_install_component component)
     install(TARGETS softcell_low_memory EXPORT softcell_libspe2 LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/softcell COMPONENT development)
     install(DIRECTORY ${PROJECT_SOURCE_DIR}/ppu/psl1ght/include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/softcell/psl1ght COMPONENT development)
     install(DIRECTORY ${PROJECT_BINARY_DIR}/ppu/psl1ght/installed/ DESTINATION ${CMAKE_INSTALL_DATADIR}/softcell/psl1ght COMPONENT development)
+    install(DIRECTORY ${PROJECT_BINARY_DIR}/ppu/libspe2/installed/ DESTINATION ${CMAKE_INSTALL_DATADIR}/softcell/cell COMPONENT development)
     softcell_install_pkg_config(psl1ght "thread groups and raw SPUs as PSL1GHT has them"
       CFLAGS -fno-pie -I\${prefix}/${CMAKE_INSTALL_INCLUDEDIR}/softcell/psl1ght
       LIBS -no-pie -Wl,--no-as-needed -L\${prefix}/${CMAKE_INSTALL_LIBDIR}/softcell -lsoftcell_low_memory -lspe2

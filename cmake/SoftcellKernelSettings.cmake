@@ -92,7 +92,8 @@ endif()
 set(SOFTCELL_C_FLAGS ${SOFTCELL_KERNEL_FLAGS})
 list(REMOVE_ITEM SOFTCELL_C_FLAGS -std=c++17 -fno-exceptions -fno-rtti -fno-builtin -Wextra -Wshadow)
 # As the SPU's compilers do it: variables without a value that several sources define are one, as old C has it.
-list(APPEND SOFTCELL_C_FLAGS -fcommon)
+# Likewise their inline functions, of which softcell_vector_casts makes weak ones.
+list(APPEND SOFTCELL_C_FLAGS -fcommon -fgnu89-inline)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   list(REMOVE_ITEM SOFTCELL_C_FLAGS -ffreestanding)  # GCC's main is then no special function, and returns nothing by itself
   list(APPEND SOFTCELL_C_FLAGS -fno-builtin -maddress-mode=long -Wno-main)

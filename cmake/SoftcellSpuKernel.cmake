@@ -89,6 +89,7 @@ function(softcell_compile_c_source object name source)
     COMMAND softcell_vector_casts ${stem}.i ${stem}.softcell.i
     COMMAND ${CMAKE_CXX_COMPILER} -x cpp-output -std=gnu17 ${SOFTCELL_C_FLAGS} ${SOFTCELL_PROGRAM_FLAGS} ${options}
       ${SOFTCELL_C_REWRITTEN_FLAGS} -c ${stem}.softcell.i -o ${stem}.o
+    COMMAND ${CMAKE_OBJCOPY} --weaken-symbols=${stem}.softcell.i.inline ${stem}.o
     DEPENDS ${source} softcell_vector_casts DEPFILE ${stem}.d
     COMMAND_EXPAND_LISTS VERBATIM
     COMMENT "Compiling C kernel source ${file}")

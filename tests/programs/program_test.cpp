@@ -30,7 +30,8 @@
 #define SC_PROGRAMS(X)                                                                  \
   X(vectors) X(casts) X(language) X(library) X(jumps) X(fails) X(maths) X(counts) X(files) \
   X(calendar) X(text_numbers) X(characters) X(doubles) X(shared_words) X(prints) X(simd) \
-  X(traps) X(statics) X(objects) X(destroys) X(vmx) X(no_parameters)
+  X(traps) X(statics) X(objects) X(destroys) X(vmx) X(stl) \
+  X(no_parameters)
 // clang-format on
 extern "C" {
 #define SC_DECLARE(name)                                                                         \
@@ -111,7 +112,7 @@ TEST_P(Programs, PassThemCheckedWithoutAFinding) {
 
 INSTANTIATE_TEST_SUITE_P(Each, Programs,
                          testing::Values("vectors", "casts", "language", "library", "jumps", "calendar",
-                                         "characters", "doubles", "simd", "statics", "objects", "vmx",
+                                         "characters", "doubles", "simd", "statics", "objects", "vmx", "stl",
                                          "no_parameters"));
 
 TEST(Program, PrintsOnThePpuSide) {

@@ -15,12 +15,6 @@ step("clean" make -C ${lab} clean)
 step("make without the wait" make -C ${lab} ${tools} "SPU_CFLAGS=-O2 -DFACTOR=3 -DFORGETS -Ispu")
 says(0 "finding: SPE 0, kernel scale, more_help.cpp:5: load-in-flight" ${CMAKE_COMMAND} -E env SOFTCELL_CHECKED=1 SOFTCELL_DMA=lazy ${lab}/lab)
 
-# Vectors in C++ as the SPU's compilers spell them.
-foreach(level -O2 -fsyntax-only)
-  step("vectors by their names ${level}" ${BIN}/softcell-spu-g++ -Wall -Werror ${level} ${CMAKE_CURRENT_LIST_DIR}/spelled/vectors.cpp -o ${lab}/spelled)
-endforeach()
-says(0 "" ${BIN}/softcell spu run --checked ${lab}/spelled)
-
 # Other ways to call the commands.
 set(gcc ${BIN}/softcell-spu-gcc)
 says(0 "version" ${gcc} -v)

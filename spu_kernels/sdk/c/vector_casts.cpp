@@ -11,6 +11,10 @@
 //
 // The compiler takes headers in the folders for those of a system, of which it says no warnings.
 //
+// OUTPUT.inline gets the names of functions that are defined inline and not static, one a line. Compilers of old C make an external function
+// of each, those of newer C of none unless asked to; programs rely on the one or the other. Here each source makes one, which is then made
+// weak, so that it does not matter how many sources do.
+//
 // Lines stay where they are, so that the compiler's messages and the debugger name those of the source.
 //
 // In C++ vectors are classes, which do all of that by themselves, except for two spellings: `vector unsigned int` becomes the name of its
@@ -152,6 +156,8 @@ class Rewriter {
     return std::move(out_);
   }
 
+  const std::string& inline_functions() const { return inline_functions_; }
+
  private:
   static bool is_blank(const Token& t) { return t.kind == Token::kSpace || t.kind == Token::kLine; }
   bool is(std::size_t at, std::string_view text) const {
@@ -173,6 +179,7 @@ class Rewriter {
       if (!foreign_ && is_in_system_folder(t.text)) out_ += " 3";
     }
     if (is_blank(t)) return;
+    if (depth_ == 0) note_declaration(t);
     if (t.text == "{") {
       // A function's body begins behind a parameter list, or behind the declarations of K&R's parameters; all else at this level is a
       // declaration or an initialiser.
@@ -189,6 +196,26 @@ class Rewriter {
     }
     last_ = t.text;
     last_kind_ = t.kind;
+  }
+
+  /// Outside of functions: whether a function is being defined inline, and its name, which is the first one in front of a parenthesis.
+  void note_declaration(const Token& t) {
+    if (t.text == ";" || t.text == "}") {
+      declared_ = {};
+    } else if (t.text == "static" || t.text == "extern") {
+      declared_.is_inline_here = false;
+      declared_.may_be_inline_here = false;
+    } else if (t.text == "inline" || t.text == "__inline__" || t.text == "__inline") {
+      declared_.is_inline_here = declared_.may_be_inline_here;
+    } else if (t.text == "(" && declared_.name.empty() && last_kind_ == Token::kWord &&
+               last_.substr(0, 11) != "__attribute" && last_.find("typeof") == std::string::npos) {
+      declared_.name = last_;
+    } else if (t.text == "{") {
+      const bool is_function = last_ == ")" || last_ == ";";
+      if (is_function && declared_.is_inline_here && !declared_.name.empty())
+        inline_functions_ += declared_.name + "\n";
+      declared_ = {};
+    }
   }
 
   bool is_in_system_folder(std::string_view marker) const {
@@ -595,6 +622,12 @@ class Rewriter {
   int depth_ = 0;
   bool in_function_ = false, foreign_ = false;
   bool is_static_ = false;  ///< in a declaration that has the word static
+  struct Declared {
+    bool may_be_inline_here = true, is_inline_here = false;
+    std::string name;
+  };
+  Declared declared_;
+  std::string inline_functions_ = "# as objcopy --weaken-symbols reads them; it refuses an empty file\n";
 };
 
 }  // namespace
@@ -612,11 +645,16 @@ int main(int count, char** arguments) {
     std::cerr << "softcell_vector_casts: " << arguments[1] << " cannot be read\n";
     return 1;
   }
-  std::ofstream out(arguments[2], std::ios::binary);
-  out << Rewriter(tokens_of(source, is_cxx), is_cxx, {arguments + 3, arguments + count}).run();
-  if (!out.flush()) {
-    std::cerr << "softcell_vector_casts: " << arguments[2] << " cannot be written\n";
-    return 1;
+  Rewriter rewriter(tokens_of(source, is_cxx), is_cxx, {arguments + 3, arguments + count});
+  const std::string output = arguments[2];
+  for (const auto& [file, text] :
+       {std::pair(output, rewriter.run()), std::pair(output + ".inline", rewriter.inline_functions())}) {
+    std::ofstream out(file, std::ios::binary);
+    out << text;
+    if (!out.flush()) {
+      std::cerr << "softcell_vector_casts: " << file << " cannot be written\n";
+      return 1;
+    }
   }
   return 0;
 }

@@ -51,12 +51,19 @@ static void atomic_operations(void) {
   CHECK(flag == 5 && __atomic_fetch_nand(&counter, 3, __ATOMIC_RELAXED) == 7 && counter == ~3);
 }
 
+/* Old C makes an external function of it, newer C of none that is inline without extern. It is not inlined here. */
+inline int steps_to_one(unsigned int n) {
+  return n < 2 ? 0 : 1 + (n % 2 == 0 ? steps_to_one(n / 2) : steps_to_one(3 * n + 1));
+}
+static int (*const volatile counts_steps)(unsigned int) = steps_to_one;
+
 int main(void) {
   enum colour c = 5;
   void* anything = buffer;
   char* text = anything;
   int new = 3, this = 4;
   operation = old_style;
+  CHECK(counts_steps(27) == 111 && steps_to_one(6) == 8);
   CHECK(defaults.depth == 3 && defaults.scale == 2.5 && defaults.name[0] == 'd');
   CHECK(primes[0] == 2 && primes[2] == 5 && primes[3] == 7);
   CHECK(names[2][1] == 'w' && tentative == 4);

@@ -1,5 +1,5 @@
-// Vectors as the SPU's compilers spell them, in C++, among other things that have these names or look like them. Its status is the number of
-// the first check that fails.
+// Vectors as the SPU's compilers spell them, in C++, among other things that have these names or look like them.
+// Its status is the number of the check that fails.
 #include <spu_intrinsics.h>
 #include <vec_literal.h>
 

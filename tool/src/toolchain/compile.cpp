@@ -135,6 +135,8 @@ void compile_build(const Input& source, const std::filesystem::path& object, boo
   append(command, flags_of(settings::kCRewrittenFlags, places));
   append(command, {"-c", rewritten, "-o", object.string()});
   go(command);
+  if (!is_cxx && options.step != Step::kCheck)
+    go({"objcopy", "--weaken-symbols=" + rewritten + ".inline", object.string()});
 }
 
 }  // namespace
