@@ -137,7 +137,7 @@ function(softcell_link_spu_image name)
       ${SOFTCELL_KERNEL_LINKER} -m elf32_x86_64 -pie --no-dynamic-linker -T ${SOFTCELL_SDK_DIR}/ls.ld
       --defsym softcell_stack_bytes=${arg_STACK_BYTES}
       --defsym softcell_is_checked=${arg_CHECKED} --defsym softcell_is_program=${program} --defsym softcell_image_begin=${image_begin}
-      --emit-relocs --build-id=none -z noexecstack --no-warn-rwx-segments -z max-page-size=128
+      --emit-relocs --build-id=none -z noexecstack --no-warn-rwx-segments --no-warn-execstack -z max-page-size=128
       ${objects} ${arg_OBJECT_FILES} ${library}
     DEPENDS ${arg_OBJECTS} ${objects} ${arg_OBJECT_FILES} ${arg_LIBRARY} ${SOFTCELL_SDK_DIR}/ls.ld ${SOFTCELL_LINK_IMAGE}
     COMMAND_EXPAND_LISTS VERBATIM
