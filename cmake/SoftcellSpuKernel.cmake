@@ -128,7 +128,7 @@ function(softcell_link_spu_image name)
   if(arg_LIBRARY)
     set(program 1)
     # Its functions win over the library's of the same name (muldefs). That it has none twice itself is seen when its objects are linked alone.
-    set(check_definitions COMMAND ${SOFTCELL_KERNEL_LINKER} -m elf32_x86_64 -r -o ${arg_IMAGE}.objects ${objects} ${arg_OBJECT_FILES})
+    set(check_definitions COMMAND ${SOFTCELL_KERNEL_LINKER} -m elf32_x86_64 -r --no-warn-execstack -o ${arg_IMAGE}.objects ${objects} ${arg_OBJECT_FILES})
     set(library -e softcell_start --gc-sections -z muldefs -u softcell_start $<TARGET_FILE:${arg_LIBRARY}>)
   endif()
   add_custom_command(OUTPUT ${arg_IMAGE}
@@ -137,7 +137,7 @@ function(softcell_link_spu_image name)
       ${SOFTCELL_KERNEL_LINKER} -m elf32_x86_64 -pie --no-dynamic-linker -T ${SOFTCELL_SDK_DIR}/ls.ld
       --defsym softcell_stack_bytes=${arg_STACK_BYTES}
       --defsym softcell_is_checked=${arg_CHECKED} --defsym softcell_is_program=${program} --defsym softcell_image_begin=${image_begin}
-      --emit-relocs --build-id=none -z noexecstack --no-warn-rwx-segments --no-warn-execstack -z max-page-size=128
+      --emit-relocs --build-id=none -z noexecstack --no-warn-rwx-segments -z max-page-size=128
       ${objects} ${arg_OBJECT_FILES} ${library}
     DEPENDS ${arg_OBJECTS} ${objects} ${arg_OBJECT_FILES} ${arg_LIBRARY} ${SOFTCELL_SDK_DIR}/ls.ld ${SOFTCELL_LINK_IMAGE}
     COMMAND_EXPAND_LISTS VERBATIM

@@ -79,8 +79,8 @@ int link_build(const Words& files, const std::filesystem::path& output, bool che
   define("softcell_is_checked", checked ? 1 : 0);
   define("softcell_is_program", 1);
   define("softcell_image_begin", 0x80);
-  append(command, {"--emit-relocs", "--build-id=none", "-z", "noexecstack", "--no-warn-rwx-segments",
-                   "--no-warn-execstack", "-z", "max-page-size=128"});
+  append(command, {"--emit-relocs", "--build-id=none", "-z", "noexecstack", "--no-warn-rwx-segments", "-z",
+                   "max-page-size=128"});
   if (!checked) append(command, options.linker);
   append(command, files);
   append(command, {"-e", "softcell_start", "--gc-sections", "-z", "muldefs", "-u", "softcell_start"});
@@ -142,7 +142,7 @@ int link_with_stack(const Words& files, const std::filesystem::path& output, boo
 }
 
 void link_object(const Words& files, const std::filesystem::path& output) {
-  Words command{settings::kLinker, "-m", "elf32_x86_64", "-r", "-o", output.string()};
+  Words command{settings::kLinker, "-m", "elf32_x86_64", "-r", "--no-warn-execstack", "-o", output.string()};
   append(command, files);
   run_or_fail(command);
 }
