@@ -138,7 +138,7 @@ function(softcell_link_spu_image name)
   if(arg_LIBRARY)
     set(program 1)
     # Its functions win over the library's of the same name (muldefs). That it has none twice itself is seen when its objects are linked alone.
-    set(check_definitions COMMAND ${SOFTCELL_KERNEL_LINKER} -m elf32_x86_64 -r -o ${arg_IMAGE}.objects ${objects} ${arg_OBJECT_FILES})
+    set(check_definitions COMMAND ${SOFTCELL_KERNEL_LINKER} -m elf32_x86_64 -r --no-warn-execstack -o ${arg_IMAGE}.objects ${objects} ${arg_OBJECT_FILES})
     set(library -e softcell_start --gc-sections -z muldefs -u softcell_start $<TARGET_FILE:${arg_LIBRARY}>)
   endif()
   add_custom_command(OUTPUT ${arg_IMAGE}

@@ -21,3 +21,9 @@ foreach(level -O2 -fsyntax-only)
   step("vectors by their names ${level}" ${BIN}/softcell-spu-g++ -Wall -Werror ${level} ${CMAKE_CURRENT_LIST_DIR}/spelled/vectors.cpp -o ${SCRATCH}/spelled)
 endforeach()
 says(0 "" ${BIN}/softcell spu run --checked ${SCRATCH}/spelled)
+
+# GNU C's functions in functions, whose addresses need code on the stack.
+file(WRITE ${SCRATCH}/nested.c "static int apply(int (*f)(int), int x) { return f(x); }\n"
+  "int main(void) { int k = 5; int added(int x) { return x + k++; } return apply(added, 2) + apply(added, 2) == 15 ? 0 : 1; }\n")
+says(0 "^$" ${BIN}/softcell-spu-gcc ${SCRATCH}/nested.c -o ${SCRATCH}/nested)
+says(0 "" ${BIN}/softcell spu run --checked ${SCRATCH}/nested)

@@ -11,9 +11,9 @@
 //
 // The compiler takes headers in the folders for those of a system, of which it says no warnings.
 //
-// OUTPUT.inline gets the names of functions that are defined inline and not static, one a line. Compilers of old C make an external function
-// of each, those of newer C of none unless asked to; programs rely on the one or the other. Here each source makes one, which is then made
-// weak, so that it does not matter how many sources do.
+// OUTPUT.inline gets the names of functions that are defined inline and not static, one a line. Compilers of old C make an external
+// function of each, those of newer C of none unless asked to, and programs rely on the one or the other. Here each source makes one, which
+// is then made weak, so that it does not matter how many sources do.
 //
 // Lines stay where they are, so that the compiler's messages and the debugger name those of the source.
 //

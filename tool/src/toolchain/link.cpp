@@ -142,7 +142,7 @@ int link_with_stack(const Words& files, const std::filesystem::path& output, boo
 }
 
 void link_object(const Words& files, const std::filesystem::path& output) {
-  Words command{settings::kLinker, "-m", "elf32_x86_64", "-r", "-o", output.string()};
+  Words command{settings::kLinker, "-m", "elf32_x86_64", "-r", "--no-warn-execstack", "-o", output.string()};
   append(command, files);
   run_or_fail(command);
 }
