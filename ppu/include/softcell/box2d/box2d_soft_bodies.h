@@ -12,7 +12,7 @@
 //
 //     step:  [solver: v] [contacts: v, x += h v, impulses on rigid bodies] [Box2D: rigid bodies]
 //
-// The thread that steps the world does this work, unless the constructor gets an SpeRuntime (spe_bodies/spe_runtime.h): then the SPEs do it.
+// The thread that steps the world does this work, unless the constructor gets an SpeRuntime (spe_bodies/spe_runtime.h): then the SPEs do.
 //
 // With ContactMethod::kSpheres, the method of 2008, each outer particle is a b2Body: a circle that cannot rotate (a rolling one would have
 // no friction). It collides with everything in the world except its own body. Box2D moves the circles; softcell never writes their
@@ -144,8 +144,9 @@ class Box2dSoftBodies {
   /// Cuts a body as it is now, whether it has a fracture or not (soft_bodies/fracture.h). The body becomes its largest piece and wakes.
   ///
   /// An attachment continues with the piece that has all particles of its patch, each of them once; if no piece has, it ends. New bodies
-  /// have the collision filter of the body and follow all others in operator[]. With ContactMethod::kSpheres the body gets new b2Bodies; joints of its old ones end. Circles of two
-  /// pieces that overlap do not collide until they have been apart; softcell installs a contact filter for that, as attach() does.
+  /// have the collision filter of the body and follow all others in operator[]. With ContactMethod::kSpheres the body gets new b2Bodies;
+  /// joints of its old ones end. Circles of two pieces that overlap do not collide until they have been apart; softcell installs a contact
+  /// filter for that, as attach() does.
   /// @return the other pieces that stay (Fracture::least_cells); valid until remove()
   /// @throws std::invalid_argument  the body is not one of these; the cut is not finite or has no length.
   /// @throws std::runtime_error     there would be more than 32,768 bodies; nothing has changed then
@@ -200,8 +201,8 @@ class Box2dSoftBodies {
   /// Contacts of circles are in Box2D's own list.
   void append_contacts(std::vector<Contact2d>& contacts) const;
 
-  /// Sets what a body may touch: fixtures, whose category and mask bits count, and other soft bodies; without a call it may touch all groups.
-  /// The body wakes, and so do bodies that may lie on it.
+  /// Sets what a body may touch: fixtures, whose category and mask bits count, and other soft bodies; without a call it may touch all
+  /// groups. The body wakes, and so do bodies that may lie on it.
   /// @throws std::invalid_argument  the body is not one of these.
   void set_filter(const SoftBody<2>& body, const CollisionFilter& filter);
 
