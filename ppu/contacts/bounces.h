@@ -17,6 +17,7 @@
 
 #include "ppu/contacts/contact_body.h"
 #include "ppu/contacts/contact_group.h"
+#include "ppu/numbers/disjoint_sets.h"
 #include "ppu/surfaces/contact_rigid.h"
 
 namespace softcell::ppu {
@@ -109,6 +110,15 @@ class Bounces {
       Eigen::Vector3d velocity, spin;
     };
     Change change_by(const Eigen::Vector3d& point, const Eigen::Vector3d& impulse) const;
+    /// By the impulses so far.
+    Eigen::Vector3d change_at(const Eigen::Vector3d& point) const {
+      return velocity - velocity_before + (spin - spin_before).cross(point - centre);
+    }
+    /// Keeps a share of what the impulses have changed.
+    void keep(double share) {
+      velocity = velocity_before + share * (velocity - velocity_before);
+      spin = spin_before + share * (spin - spin_before);
+    }
     double mobility(const Eigen::Vector3d& point, const Eigen::Vector3d& direction) const;
     void push(const Eigen::Vector3d& point, const Eigen::Vector3d& impulse);
   };
@@ -120,8 +130,22 @@ class Bounces {
     /// Likewise; of a rigid b, which changes its velocity at once, as it is at the substep's beginning.
     Eigen::Vector3d point_b{0, 0, 0};
     Eigen::Vector3d normal{0, 1, 0};
+    /// m/s: the velocity of a against b at that moment, gravity until then included.
+    Eigen::Vector3d hits{0, 0, 0};
     double target = 0, mobility = 1, impulse = 0;
     Eigen::Vector3d friction_impulse{0, 0, 0};
+
+    Eigen::Vector3d whole_impulse() const { return impulse * normal + friction_impulse; }
+  };
+
+  /// The kinetic energy, in joules, that bodies which hit each other gain in the frame of what they hit, if they keep a share s of their
+  /// impulses: s linear + s^2 square.
+  struct Gain {
+    double linear = 0, square = 0;
+    /// The largest share that gains nothing.
+    double share_kept() const {
+      return linear + square > 0 && square > 0 ? std::max(0.0, -linear / square) : 1.0;
+    }
   };
 
   static Whole whole_of(const ContactBody& body, const Part& part, double time,
@@ -129,13 +153,21 @@ class Bounces {
   static Whole whole_of(const ContactRigid& rigid);
   /// The least velocity of a against b along the normal after the bounce, m/s; none: the contact needs no change.
   /// @param share  of the substep, until they touch
-  static std::optional<double> target_of(const BounceContact& contact, const Bounce& bounce, double share,
+  static std::optional<double> target_of(const BounceContact& contact, Bounce& bounce, double share,
                                          const BounceSettings& settings, double step);
   void choose_contacts();
   void choose_parts(std::span<const ContactBody> bodies);
   void choose(std::span<const ContactBody> bodies, std::span<const ContactRigid> rigids,
               const BounceSettings& settings, float step);
   void iterate();
+  std::uint32_t set_of(const Whole& whole) {
+    return together_.find(static_cast<std::uint32_t>(&whole - wholes_.data()));
+  }
+  std::uint32_t set_of(const Bounce& bounce) {
+    return set_of(bounce.a->inverse_mass > 0 ? *bounce.a : *bounce.b);
+  }
+  void find_those_together();
+  void take_back_gained_energy();
   void apply(std::span<ContactBody> bodies, std::span<ContactRigid> rigids, float step) const;
 
   std::vector<BounceContact> contacts_;
@@ -146,6 +178,8 @@ class Bounces {
   std::vector<Part> parts_;                      // likewise
   std::vector<Whole> wholes_;                    // of changed_, then of rigids_
   std::vector<Bounce> bounces_;
+  DisjointSets together_;    // of wholes_: those that hit each other, directly or through others
+  std::vector<Gain> gains_;  // of each set, by its lowest member
 };
 
 }  // namespace softcell::ppu

@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <random>
 #include <vector>
 
 #include "contact_world.h"
@@ -202,6 +204,81 @@ TEST(Restitution, FrictionTurnsSpinIntoWay) {
 }
 
 /// Without a restitution of both there is none, to the last bit.
+/// A cube or a bar that turns, 40 kg.
+class Turning : public testing::TestWithParam<int> {
+ protected:
+  SoftBody<3>& add(ContactWorld& w, const Vector3f& centre, const Vector3f& velocity) {
+    SoftBodySettings settings = settings_of(kCellSize, any(0.1f, 1), 0.05f);
+    settings.restitution = 1;
+    settings.friction = 1;
+    const Vector3f size = GetParam() % 2 == 0 ? Vector3f(0.4f, 0.4f, 0.4f) : Vector3f(0.8f, 0.3f, 0.3f);
+    SoftBody<3>& body = w.add(make_box(size, kCellSize), settings, centre);
+    const Eigen::Quaternionf turned =
+        Eigen::Quaternionf(any(-1, 1), any(-1, 1), any(-1, 1), any(-1, 1)).normalized();
+    const Vector3f spin(any(-8, 8), any(-8, 8), any(-8, 8));
+    for (std::size_t p = 0; p < body.positions().size(); ++p) {
+      const Vector3f arm = turned * (body.position(p) - centre);
+      body.set_particle(p, centre + arm, velocity + spin.cross(arm));
+    }
+    return body;
+  }
+  float any(float least, float most) { return std::uniform_real_distribution<float>(least, most)(random_); }
+
+  /// Kinetic and potential, joules.
+  static double energy_of(const SoftBody<3>& body, float gravity) {
+    double energy = 0;
+    for (std::size_t p = 0; p < body.positions().size(); ++p) {
+      const double mass = double{body.model().masses()[p]};
+      energy +=
+          mass * (double{body.velocities()[p].squaredNorm()} / 2 + double{gravity * body.position(p).y()});
+    }
+    return energy;
+  }
+  /// @return  the most energy of five seconds, as a share of that at the beginning
+  template <typename Energy>
+  static double most_of(ContactWorld& w, const Energy& energy) {
+    const double begin = energy();
+    double most = begin;
+    for (int i = 0; i < 300; ++i) {
+      w.run(1);
+      most = std::max(most, energy());
+    }
+    return most / begin;
+  }
+
+ private:
+  std::mt19937 random_{static_cast<unsigned>(GetParam())};
+};
+
+INSTANTIATE_TEST_SUITE_P(Restitution, Turning, testing::Range(0, 10));
+
+TEST_P(Turning, OnAFloorGainNoEnergy) {
+  ContactWorld w;
+  w.add_floor(any(0.3f, 1), 1);
+  const SoftBody<3>& body = add(w, {0, any(0.8f, 1.5f), 0}, {any(-2, 2), any(-3, 0), any(-2, 2)});
+  EXPECT_LT(most_of(w, [&] { return energy_of(body, 9.81f); }), 1.03);
+}
+
+TEST_P(Turning, AgainstEachOtherGainNoEnergy) {
+  ContactWorld w(Vector3f::Zero());
+  const SoftBody<3>&a = add(w, {0, 0, 0}, {any(1, 4), 0, 0}),
+        &b = add(w, {0.9f, any(-0.2f, 0.2f), 0}, {0, 0, 0});
+  EXPECT_LT(most_of(w, [&] { return energy_of(a, 0) + energy_of(b, 0); }), 1.03);
+}
+
+TEST_P(Turning, AgainstARigidBoxGainNoEnergy) {
+  ContactWorld w(Vector3f::Zero());
+  btRigidBody& box = w.add(std::make_unique<btBoxShape>(btVector3(0.2f, 0.15f, 0.25f)), any(2, 60),
+                           {0.9f, any(-0.2f, 0.2f), 0}, 1, 1);
+  const SoftBody<3>& body = add(w, {0, 0, 0}, {any(1, 4), 0, 0});
+  const auto energy_of_box = [&] {
+    const btVector3 v = box.getLinearVelocity(), spin = box.getAngularVelocity();
+    return double{v.length2() / box.getInvMass() / 2} +
+           double{spin.dot(box.getInvInertiaTensorWorld().inverse() * spin) / 2};
+  };
+  EXPECT_LT(most_of(w, [&] { return energy_of(body, 0) + energy_of_box(); }), 1.03);
+}
+
 TEST(Restitution, OfZeroChangesNothing) {
   std::vector<std::uint64_t> hashes;
   for (const float of_floor : {0.0f, 1.0f}) {
