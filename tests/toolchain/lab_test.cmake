@@ -60,7 +60,7 @@ says(0 "note: -fexceptions: programs have no exceptions" ${BIN}/softcell-spu-g++
 # The headers of the PPU side have no warnings of their own.
 file(WRITE ${lab}/pedantic.c "#include <cbea_map.h>\n#include <libspe2.h>\n#include <libsync.h>\n#include <ppu_intrinsics.h>\nint main(void) { return 0; }\n")
 foreach(standard -std=c99 -ansi)
-  says(0 "^$" gcc ${standard} -pedantic -Wall -Wextra -Werror -I${INCLUDE} -c ${lab}/pedantic.c -o ${lab}/pedantic.o)
+  says(0 "^$" gcc ${standard} -pedantic -Wall -Wextra -Werror -I${INCLUDE} -I${SHARED} -c ${lab}/pedantic.c -o ${lab}/pedantic.o)
 endforeach()
 
 # Warnings are those that the program asks for.
