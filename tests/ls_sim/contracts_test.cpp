@@ -62,6 +62,19 @@ TEST(LsSimContractsDeathTest, OnlyUnsyncedBytesHaveAWriter) {
   SC_EXPECT_VIOLATES(unsynced->writer_of(0x110), "writer_of.*: byte 272 is in no unsynced range\n");
 }
 
+TEST(LsSimContracts, ASyncClearsUnsyncedBytesWhereverTheyAre) {
+  const auto unsynced = std::make_unique<UnsyncedBytes>();
+  for (int round = 0; round < 2; ++round) {
+    for (std::uint32_t lsa = 0; lsa < dma::kLocalStoreBytes; lsa += 1008) unsynced->mark(lsa + 8, 16, 0x80);
+    for (std::uint32_t lsa = 0; lsa < dma::kLocalStoreBytes; lsa += 1008) {
+      EXPECT_TRUE(unsynced->contains(lsa + 8) && unsynced->contains(lsa + 23)) << lsa;
+      EXPECT_FALSE(unsynced->contains(lsa + 7) || unsynced->contains(lsa + 24)) << lsa;
+    }
+    unsynced->clear();
+    EXPECT_EQ(unsynced->first_in(0, dma::kLocalStoreBytes), dma::kLocalStoreBytes);
+  }
+}
+
 TEST(LsSimContractsDeathTest, OnlyCommandsThatWereIssuedComplete) {
   CommandsInFlight in_flight;
   SC_EXPECT_VIOLATES(in_flight.complete(1, 7), "complete.*: commands up to 7 of 0 are complete\n");

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <bit>
 #include <cstdint>
 
 #include "softcell/base/assert.h"
@@ -28,7 +29,12 @@ class UnsyncedBytes {
       const std::uint32_t count = std::min(end - at, dma::kQuadwordBytes - offset);
       Quadword& quadword = quadwords_[at / dma::kQuadwordBytes];
       quadword.writer.store(writer, kRelaxed);
-      quadword.bytes.fetch_or(static_cast<std::uint16_t>(((1u << count) - 1) << offset), kRelaxed);
+      quadword.bytes.fetch_or(static_cast<std::uint16_t>(((1u << count) - 1) << offset));
+      // After its bytes: a clear() in between finds the block at the next sync.
+      const std::uint32_t block = at / kBlockBytes;
+      const std::uint64_t bit = std::uint64_t{1} << block % kBits;
+      std::atomic<std::uint64_t>& marked = marked_blocks_[block / kBits];
+      if ((marked.load() & bit) == 0) marked.fetch_or(bit);
     }
   }
 
@@ -51,11 +57,23 @@ class UnsyncedBytes {
 
   /// A sync: the SPU executes the new values of all bytes from now on.
   void clear() {
-    for (Quadword& quadword : quadwords_) quadword.bytes.store(0, kRelaxed);
+    for (std::uint32_t i = 0; i < marked_blocks_.size(); ++i) {
+      if (marked_blocks_[i].load(kRelaxed) == 0) continue;
+      std::uint64_t marked = marked_blocks_[i].exchange(0);
+      for (; marked != 0; marked &= marked - 1) clear_block(i * kBits + std::countr_zero(marked));
+    }
   }
 
  private:
   static constexpr auto kRelaxed = std::memory_order_relaxed;
+  /// A program that syncs often has written to few blocks since the last sync.
+  static constexpr std::uint32_t kBlockBytes = 1024, kBits = 64;
+
+  void clear_block(std::uint32_t block) {
+    constexpr std::uint32_t kQuadwords = kBlockBytes / dma::kQuadwordBytes;
+    for (std::uint32_t i = 0; i < kQuadwords; ++i)
+      quadwords_[block * kQuadwords + i].bytes.store(0, kRelaxed);
+  }
 
   struct Quadword {
     std::atomic<std::uint16_t> bytes{0};  ///< bit b: byte b
@@ -67,6 +85,7 @@ class UnsyncedBytes {
   }
 
   std::array<Quadword, dma::kLocalStoreBytes / dma::kQuadwordBytes> quadwords_{};
+  std::array<std::atomic<std::uint64_t>, dma::kLocalStoreBytes / kBlockBytes / kBits> marked_blocks_{};
 };
 
 }  // namespace softcell::ls_sim

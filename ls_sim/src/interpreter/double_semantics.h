@@ -3,8 +3,10 @@
 // zero, and for NaN results, which are one NaN. Each function is one instruction.
 // [SPU-ISA, double-precision instructions] documented; when the flags NAN and DENORM are set: assumed, from their names
 //
-// The host computes each lane by itself, in the lane's mode; its own sticky flags become those of FPSCR.
+// Ordinary numbers are computed in integers. The host computes all others, each lane by itself in the lane's mode; its
+// own sticky flags become those of FPSCR.
 
+#include "double_in_integers.h"
 #include "fpscr.h"
 #include "quadword.h"
 #include "softcell/base/assert.h"
@@ -64,11 +66,23 @@ inline __m128d in_mode(std::uint32_t rounding, __m128d x, __m128d y, __m128d z, 
 inline __m128d of_bits(std::uint64_t bits) { return (__m128d)U64x2{bits, 0}; }
 inline std::uint64_t bits_of(__m128d value) { return ((U64x2)value)[0]; }
 
+/// What an operation is as x * y + z.
+struct Fused {
+  std::uint64_t x, y, z;
+};
+
 /// One lane of an operation on up to three operands; one that it lacks is given as zero.
-template <class Operation>
+/// @param as_fused  from three operands to a Fused; for a product z is a zero of its sign.
+template <class Operation, class AsFused>
 std::uint64_t lane_of_double(int lane, std::uint64_t x, std::uint64_t y, std::uint64_t z,
-                             Operation&& operation, Fpscr& fpscr) {
+                             Operation&& operation, AsFused&& as_fused, Fpscr& fpscr) {
   std::uint32_t flags = is_denormal(x) || is_denormal(y) || is_denormal(z) ? Fpscr::kDoubleDenormal : 0;
+  const auto flushed = [](std::uint64_t bits) { return is_denormal(bits) ? bits & kDoubleSign : bits; };
+  const Fused fused = as_fused(flushed(x), flushed(y), flushed(z));
+  if (const auto rounded = fused_in_integers(fused.x, fused.y, fused.z, fpscr.rounding(lane))) {
+    fpscr.set_double(lane, flags | (rounded->is_inexact ? Fpscr::kDoubleInexact : 0));
+    return rounded->bits;
+  }
   const std::uint64_t result =
       bits_of(in_mode(fpscr.rounding(lane), of_bits(x), of_bits(y), of_bits(z), operation, flags));
   // Not for the NaN of an invalid operation: IEEE 754 has the same one.
@@ -79,34 +93,56 @@ std::uint64_t lane_of_double(int lane, std::uint64_t x, std::uint64_t y, std::ui
   return is_nan(result) ? kTheNan : result;
 }
 
-template <class Operation>
-Quadword both_doubles(const In& in, Quadword third, Operation&& operation, Fpscr& fpscr) {
+template <class Operation, class AsFused>
+Quadword both_doubles(const In& in, Quadword third, Operation&& operation, AsFused&& as_fused, Fpscr& fpscr) {
   const auto lane = [&](int i) {
     return lane_of_double(i, double_bits(in.a, i), double_bits(in.b, i), double_bits(third, i), operation,
-                          fpscr);
+                          as_fused, fpscr);
   };
   return from_doubles(lane(0), lane(1));
 }
 
+inline constexpr std::uint64_t kDoubleOne = 0x3FF0000000000000;
+
 inline Quadword dfa(const In& in, Fpscr& fpscr) {
   return both_doubles(
-      in, Quadword{}, [](__m128d x, __m128d y, __m128d) { return _mm_add_sd(x, y); }, fpscr);
+      in, Quadword{}, [](__m128d x, __m128d y, __m128d) { return _mm_add_sd(x, y); },
+      [](std::uint64_t x, std::uint64_t y, std::uint64_t) {
+        return Fused{x, kDoubleOne, y};
+      },
+      fpscr);
 }
 inline Quadword dfs(const In& in, Fpscr& fpscr) {
   return both_doubles(
-      in, Quadword{}, [](__m128d x, __m128d y, __m128d) { return _mm_sub_sd(x, y); }, fpscr);
+      in, Quadword{}, [](__m128d x, __m128d y, __m128d) { return _mm_sub_sd(x, y); },
+      [](std::uint64_t x, std::uint64_t y, std::uint64_t) {
+        return Fused{x, kDoubleOne, y ^ kDoubleSign};
+      },
+      fpscr);
 }
 inline Quadword dfm(const In& in, Fpscr& fpscr) {
   return both_doubles(
-      in, Quadword{}, [](__m128d x, __m128d y, __m128d) { return _mm_mul_sd(x, y); }, fpscr);
+      in, Quadword{}, [](__m128d x, __m128d y, __m128d) { return _mm_mul_sd(x, y); },
+      [](std::uint64_t x, std::uint64_t y, std::uint64_t) {
+        return Fused{x, y, (x ^ y) & kDoubleSign};
+      },
+      fpscr);
 }
 inline Quadword dfma(const In& in, Fpscr& fpscr) {
   return both_doubles(
-      in, in.t, [](__m128d x, __m128d y, __m128d z) { return _mm_fmadd_sd(x, y, z); }, fpscr);
+      in, in.t, [](__m128d x, __m128d y, __m128d z) { return _mm_fmadd_sd(x, y, z); },
+      [](std::uint64_t x, std::uint64_t y, std::uint64_t z) {
+        return Fused{x, y, z};
+      },
+      fpscr);
 }
 inline Quadword dfms(const In& in, Fpscr& fpscr) {
   return both_doubles(
-      in, in.t, [](__m128d x, __m128d y, __m128d z) { return _mm_fmsub_sd(x, y, z); }, fpscr);
+      in, in.t, [](__m128d x, __m128d y, __m128d z) { return _mm_fmsub_sd(x, y, z); },
+      [](std::uint64_t x, std::uint64_t y, std::uint64_t z) {
+        return Fused{x, y, z ^ kDoubleSign};
+      },
+      fpscr);
 }
 
 /// Negates what was rounded, but not a NaN.
@@ -143,6 +179,10 @@ inline Quadword fesd(const In& in, Fpscr& fpscr) {
 }
 
 inline std::uint32_t double_to_single(std::uint64_t bits, int lane, Fpscr& fpscr) {
+  if (const auto rounded = single_in_integers(bits, fpscr.rounding(lane))) {
+    fpscr.set_double(lane, rounded->is_inexact ? Fpscr::kDoubleInexact : 0);
+    return rounded->bits;
+  }
   std::uint32_t flags = is_denormal(bits) ? Fpscr::kDoubleDenormal : 0;
   const __m128d rounded = in_mode(
       fpscr.rounding(lane), of_bits(bits), __m128d{}, __m128d{},
