@@ -46,6 +46,24 @@ file(WRITE ${lab}/unchecked.c "#ifdef SOFTCELL_CHECKED\nint nowhere(void);\n#els
   "int main(void) { return nowhere(); }\n")
 says(0 "undefined[^\n]*nowhere.*gets no checked image: it does not link\n$" ${gcc} ${lab}/unchecked.c -o ${lab}/unchecked)
 
+# Options for symbols hold for both images, and those of the preprocessor for the preprocessor only.
+file(WRITE ${lab}/symbols.c "#include <stdlib.h>\nextern char place[]; void *__real_malloc(size_t); static int count;\n"
+  "void *__wrap_malloc(size_t n) { count += MORE; return __real_malloc(n); }\n"
+  "int main(void) { free(malloc(3)); return ((unsigned)place & 0x3ffff) + count; }\n")
+says(0 "^$" ${gcc} -Wp,-MMD,${lab}/symbols.of_wp -Xpreprocessor -DMORE=5 ${lab}/symbols.c -Wl,--defsym=place=0x20 -Wl,--wrap,malloc
+  -o ${lab}/symbols)
+says(0 "symbols.c" grep ":" ${lab}/symbols.of_wp)
+foreach(image "" --checked)
+  says(1 "ended with status 37" ${BIN}/softcell spu run ${image} ${lab}/symbols)
+endforeach()
+
+file(WRITE ${lab}/assembly.c "int main(void) {\n  int x = 1;\n  __asm__ volatile(\"ai %0,%0,1\" : \"+r\"(x));\n  return x;\n}\n")
+says(1 "assembly.c:3: Error.*assembly.c: its inline assembly has SPU instructions, which cannot run" ${gcc} -g -c ${lab}/assembly.c
+  -o ${lab}/assembly.o)
+step("no object of it" test ! -e ${lab}/assembly.o)
+file(WRITE ${lab}/empty.c "void f(void) { __asm__ volatile(\"\" : : : \"memory\"); }\n")
+says(0 "^$" ${gcc} -c ${lab}/empty.c -o ${lab}/empty.o)
+
 says(0 "^[0-9.]+\n$" ${gcc} -dumpversion)
 says(0 "^libgcc.a\n$" ${gcc} -print-libgcc-file-name)
 says(0 "^crt1.o\n$" ${gcc} -print-file-name=crt1.o)

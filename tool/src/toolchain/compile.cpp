@@ -134,7 +134,18 @@ void compile_build(const Input& source, const std::filesystem::path& object, boo
   append(command, options.compiler);
   append(command, flags_of(settings::kCRewrittenFlags, places));
   append(command, {"-c", rewritten, "-o", object.string()});
-  go(command);
+  try {
+    go(command);
+  } catch (const Failed&) {
+    // What compiles, but not to an object, has instructions of its own.
+    command[command.size() - 4] = "-S";
+    command.back() = "/dev/null";
+    if (run(command, true) != 0) throw;
+    throw std::runtime_error(
+        source.file +
+        ": its inline assembly has SPU instructions, which cannot run on the PC's processor; "
+        "write si_ai() for `ai` and so on");
+  }
   if (!is_cxx && options.step != Step::kCheck)
     go({"objcopy", "--weaken-symbols=" + rewritten + ".inline", object.string()});
 }

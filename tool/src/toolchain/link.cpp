@@ -81,6 +81,7 @@ int link_build(const Words& files, const std::filesystem::path& output, bool che
   define("softcell_image_begin", 0x80);
   append(command, {"--emit-relocs", "--build-id=none", "-z", "noexecstack", "--no-warn-rwx-segments", "-z",
                    "max-page-size=128"});
+  append(command, options.symbols);
   if (!checked) append(command, options.linker);
   append(command, files);
   append(command, {"-e", "softcell_start", "--gc-sections", "-z", "muldefs", "-u", "softcell_start"});

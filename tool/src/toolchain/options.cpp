@@ -141,7 +141,11 @@ class Parser {
       parse_linker_list(word.substr(4));
     } else if (word == "-Xlinker") {
       parse_linker_list(value(word, "-Xlinker"));
-    } else if (word == "-T" || word == "-Xassembler" || word == "-Xpreprocessor" || word == "--param") {
+    } else if (word.starts_with("-Wp,")) {
+      add_preprocessor_list(word.substr(4));
+    } else if (word == "-Xpreprocessor") {
+      options_.preprocessor.push_back(value(word, word));
+    } else if (word == "-T" || word == "-Xassembler" || word == "--param") {
       options_.meaningless.push_back(word + " " + value(word, word));
     } else if (word == "-r") {
       options_.relocatable = true;
@@ -183,6 +187,16 @@ class Parser {
            starts_with_any(word, "-fpack-struct", "-fmax-errors", "-fdiagnostics", "-ftemplate-depth");
   }
 
+  /// Words that are separated by commas. `-MD` and `-MMD` have the file that they write as their value there.
+  void add_preprocessor_list(std::string_view list) {
+    const Words words = split(list);
+    for (std::size_t i = 0; i < words.size(); ++i) {
+      options_.preprocessor.push_back(words[i]);
+      if (is_any(words[i], "-MD", "-MMD") && i + 1 < words.size() && !words[i + 1].starts_with('-'))
+        options_.preprocessor.push_back("-MF");
+    }
+  }
+
   void parse_linker_option(const std::string& word) {
     if (!word.starts_with('-')) return add_input(word);
     if (word.starts_with("-o")) {
@@ -197,24 +211,31 @@ class Parser {
       options_.linker.insert(options_.linker.end(), {word, value(word, word)});
     } else if (word == "-z") {
       parse_linker_keyword(value(word, word));
-    } else if (word.starts_with("--defsym=")) {
-      options_.linker.push_back(word);
+    } else if (starts_with_any(word, "--defsym=", "--wrap=", "-wrap=")) {
+      options_.symbols.push_back(word);
     } else if (is_ignored_with_value(word)) {
       options_.meaningless.push_back(word + " " + value(word, word));
-    } else if (word == "--defsym") {
-      options_.linker.insert(options_.linker.end(), {word, value(word, word)});
+    } else if (is_any(word, "--defsym", "-defsym", "--wrap", "-wrap")) {
+      options_.symbols.insert(options_.symbols.end(), {word, value(word, word)});
     } else {
       options_.meaningless.push_back(word);
     }
   }
 
-  /// Parses linker options that are separated by commas; some use the next word as their value.
-  void parse_linker_list(std::string_view list) {
+  /// What stands between commas.
+  static Words split(std::string_view list) {
+    Words words;
     for (std::size_t at = 0; at <= list.size();) {
       const auto comma = std::min(list.find(',', at), list.size());
-      passed_on_.emplace_back(list.substr(at, comma - at));
+      words.emplace_back(list.substr(at, comma - at));
       at = comma + 1;
     }
+    return words;
+  }
+  /// Parses linker options that are separated by commas; some use the next word as their value.
+  void parse_linker_list(std::string_view list) {
+    const Words words = split(list);
+    passed_on_.insert(passed_on_.end(), words.begin(), words.end());
     // The value may come with the next -Xlinker or -Wl.
     if (!needs_linker_value(passed_on_.back())) parse_passed_on();
   }
@@ -226,7 +247,8 @@ class Parser {
     at_ = outer_at;
   }
   static bool needs_linker_value(std::string_view word) {
-    return is_any(word, "-o", "-l", "-L", "-Map", "-z", "--defsym") || is_ignored_with_value(word);
+    return is_any(word, "-o", "-l", "-L", "-Map", "-z", "--defsym", "-defsym", "--wrap", "-wrap") ||
+           is_ignored_with_value(word);
   }
   static bool is_ignored_with_value(std::string_view word) {
     return is_any(word, "-e", "-T", "-m", "-u", "-h", "-Ttext", "-Tdata", "-Tbss", "--script", "--entry");

@@ -31,6 +31,7 @@ struct Options {
   std::string cxx_standard = "-std=gnu++17";
   bool older_cxx = false;                    ///< -std= names an older C++ than there is
   Words linker;                              ///< -Map and the like, in the form that ld takes
+  Words symbols;                             ///< --defsym and --wrap, which each build needs
   std::optional<std::uint32_t> stack_bytes;  ///< -Wl,-z,stack-size=BYTES
   bool relocatable = false;                  ///< -r
   bool verbose = false;
