@@ -29,6 +29,14 @@ constexpr std::uint32_t bytes_of_lines(const MfcCommand& command) {
   return (begin + command.size + kLineMask) & ~kLineMask;
 }
 
+/// "1", or "1 or 4": the tags of a mask.
+std::string any_of_tags(std::uint32_t mask) {
+  std::string text;
+  for (; mask != 0; mask &= mask - 1)
+    text += (text.empty() ? "" : " or ") + std::to_string(std::countr_zero(mask));
+  return text;
+}
+
 std::uint64_t bytes_moved(const MfcCommand& command, std::span<const std::byte> local_store,
                           bool is_big_endian) {
   switch (command.kind()) {
@@ -389,11 +397,17 @@ std::variant<std::uint32_t, Fault> Mfc::read_list_stall_status() {
   while (stall_status_ == 0) {
     if (progress(lists_)) continue;
     if (suspended_by_) return suspension();
+    if (stalled_ == 0)
+      return Fault{.rule = Rule::kListStallNotExpected,
+                   .detail = "MFC_RdListStallStat was read, and no list that stalls is queued"};
+    std::uint32_t tags = 0;
+    for (SlotSet rest = stalled_; rest != 0; rest &= static_cast<SlotSet>(rest - 1))
+      tags |= 1u << list_transfers_[std::countr_zero(rest)].command().tag;
     return Fault{.rule = Rule::kListStallNotExpected,
-                 .detail = stalled_ == 0
-                               ? "MFC_RdListStallStat was read, and no list that stalls is queued"
-                               : "MFC_RdListStallStat was read again, but the stalled list waits until its "
-                                 "tag is written to MFC_WrListStallAck"};
+                 .detail = "MFC_RdListStallStat was read again, and no further list stalls before tag " +
+                           any_of_tags(tags) +
+                           " is written to MFC_WrListStallAck; the stall bit of a list's last element has no "
+                           "effect"};
   }
   if (suspended_by_) return suspension();
   return std::exchange(stall_status_, 0);

@@ -431,8 +431,21 @@ TEST(MfcListStall, ReadingItsStatusWithNothingThatStallsNeverEnds) {
   bench.issue_list(MfcOpcode::getl, 0x1000, {bench.stalling(16, 0), bench.element(16, 0)}, 3);
   EXPECT_EQ(bench.stall_status(), 1u << 3);
   expect_fault(
-      "MFC_RdListStallStat was read again, but the stalled list waits until its tag is written to "
-      "MFC_WrListStallAck");
+      "MFC_RdListStallStat was read again, and no further list stalls before tag 3 is written to "
+      "MFC_WrListStallAck; the stall bit of a list's last element has no effect");
+}
+
+TEST(MfcListStall, ReadingItsStatusAgainNamesTheTagsThatWait) {
+  ListBench bench(kEager);
+  for (const std::uint32_t tag : {1u, 4u, 1u})
+    bench.issue_list(MfcOpcode::getl, 0x1000, {bench.stalling(16, 0), bench.stalling(16, 0)}, tag);
+  EXPECT_EQ(bench.stall_status(), 1u << 1 | 1u << 4);
+  ASSERT_FALSE(bench.mfc.write_list_stall_ack(4));  // on to its last element, which does not stall
+  const auto status = bench.mfc.read_list_stall_status();
+  ASSERT_TRUE(std::holds_alternative<Fault>(status));
+  EXPECT_EQ(std::get<Fault>(status).detail,
+            "MFC_RdListStallStat was read again, and no further list stalls before tag 1 is written to "
+            "MFC_WrListStallAck; the stall bit of a list's last element has no effect");
 }
 
 TEST(MfcListStall, AnAcknowledgementNeedsAStalledListOfItsTag) {
