@@ -136,6 +136,8 @@ int main(uint64_t spe, uint64_t argp, uint64_t envp) {
   mfc_get(c, argp, 256, 0, 0, 0); mfc_write_tag_mask(1); mfc_read_tag_status_all();
 #elif CASE == 5
   free(&variable);
+#elif CASE == 6
+  mfc_put(b, argp, 64, 0, 0, 0); free((void *)b); mfc_write_tag_mask(1); mfc_read_tag_status_all(); b = NULL;
 #else
   free(malloc(0)); free(calloc(3, 5)); free(NULL);
   mfc_get(c, argp, 128, 0, 0, 0); mfc_write_tag_mask(1); mfc_read_tag_status_all();
@@ -151,7 +153,8 @@ set(findings "^$" "heap.c:12: outside-objects: store of 4 bytes at the heap [^\n
   "heap.c:14: outside-objects: load of 4 bytes at the heap [^\n]*: it lies in a block of 64 bytes that was freed"
   "heap.c:16: outside-objects: free of the heap [^\n]*: the block was freed before"
   "heap.c:18: outside-objects: get tag 0[^\n]*: it passes the end of a block of 128 bytes"
-  "heap.c:20: outside-objects: free of variable [^\n]*: no block of the heap begins there")
+  "heap.c:20: outside-objects: free of variable [^\n]*: no block of the heap begins there"
+  "heap.c:22: store-in-flight: free of the heap [^\n]*, and whoever gets these bytes next stores there. in flight: put of 64 bytes[^\n]*heap.c:22")
 set(case 0)
 foreach(found IN LISTS findings)
   step("case ${case} of the heap" ${gcc} -g -DCASE=${case} ${lab}/heap.c -o ${lab}/heap)

@@ -229,11 +229,15 @@ void Checker::on_heap_block(const Access& block, bool is_freed) {
   SC_ASSERT(objects_.has_value(), "a block of {} bytes at {} before a run", block.bytes, block.lsa);
   stack_pointer_ = block.stack_pointer.value;
   if (!is_freed) return heap_.add(block.lsa.value, block.bytes);
-  const std::string mistake = heap_.end(block.lsa.value);
-  if (!mistake.empty())
-    report(
-        Rule::kOutsideObjects, block.instruction,
-        "free of " + objects_->describe(block.lsa.value) + " (LSA " + hex(block.lsa.value) + "): " + mistake);
+  const std::uint32_t lsa = block.lsa.value, bytes = heap_.bytes_at(lsa);
+  const auto freed = [&] { return "free of " + objects_->describe(lsa) + " (LSA " + hex(lsa) + ")"; };
+  const std::string mistake = heap_.end(lsa);
+  if (!mistake.empty()) return report(Rule::kOutsideObjects, block.instruction, freed() + ": " + mistake);
+  const CommandInFlight* other = in_flight_.writing(lsa, bytes);
+  if (other == nullptr) other = in_flight_.reading(lsa, bytes);
+  if (other == nullptr) return;
+  report(Rule::kStoreInFlight, block.instruction,
+         freed() + ", and whoever gets these bytes next stores there; in flight: " + describe(*other));
 }
 
 /// What it reads may be more than its caller has written, such as the padding of what fwrite() is given.
@@ -294,6 +298,8 @@ void Checker::check_store(const Access& access) {
   }
   if (other != nullptr) {
     report(rule, access.instruction, describe(access) + "; in flight: " + describe(*other));
+  } else if (is_in_unread_line(access)) {
+    report(rule, access.instruction, describe(access) + "; in flight: " + describe(*status_unread_));
   } else if (const CommandInFlight* const beside = get_beside(access)) {
     report(Rule::kStoreInFlight, access.instruction,
            describe(access) + ", and an SPU stores the whole quadword; in flight: " + describe(*beside));
@@ -335,10 +341,25 @@ void Checker::watch_bytes_of_put(const Access& store) {
 
 /// @return  whether it breaks the rule.
 bool Checker::check_load_in_flight(const Access& access) {
-  const CommandInFlight* const other = in_flight_.writing(access.lsa.value, access.bytes);
-  if (other == nullptr) return false;
-  report(Rule::kLoadInFlight, access.instruction, describe(access) + "; in flight: " + describe(*other));
+  if (const CommandInFlight* const other = in_flight_.writing(access.lsa.value, access.bytes)) {
+    report(Rule::kLoadInFlight, access.instruction, describe(access) + "; in flight: " + describe(*other));
+    return true;
+  }
+  if (!is_in_unread_line(access) || status_unread_->command.opcode() != MfcOpcode::getllar) return false;
+  report(Rule::kLoadInFlight, access.instruction,
+         describe(access) + "; in flight: " + describe(*status_unread_));
   return true;
+}
+
+/// Whether the line of an atomic command lies there, of which the program does not know yet that it is complete.
+bool Checker::is_in_unread_line(const Access& access) const {
+  if (!status_unread_ || status_unread_->status_is_there) return false;
+  const std::uint32_t line = status_unread_->command.lsa.value / dma::kLineBytes * dma::kLineBytes;
+  return line < access.lsa.value + access.bytes && access.lsa.value < line + dma::kLineBytes;
+}
+
+std::string Checker::describe(const LineCommand& line) const {
+  return name_of(line.command) + ", issued at " + place_of(line.issued_at) + ", whose status was not read";
 }
 
 void Checker::check_load(const Access& access) {
@@ -510,6 +531,8 @@ ChannelReply Checker::count(std::uint32_t channel) {
   ChannelReply reply = to_.channels.count(channel);
   if (!reply.fault && reply.value != 0 && channel == static_cast<std::uint32_t>(Channel::kMfcRdTagStat))
     on_tag_status();
+  if (!reply.fault && reply.value != 0 && channel == kAtomicStatus && status_unread_)
+    status_unread_->status_is_there = true;
   return reply;
 }
 

@@ -108,6 +108,7 @@ class Checker final : public ChannelPort, public AccessObserver {
     dma::MfcCommand command;
     Address issued_at;
     bool line_changed = false;
+    bool status_is_there = false;  ///< as its channel's count has said
   };
 
   /// A store of an SPU program, which writes a whole quadword: the bytes that were there.
@@ -163,11 +164,13 @@ class Checker final : public ChannelPort, public AccessObserver {
   void report(dma::Rule rule, Address place, std::string detail,
               const std::optional<dma::MfcCommand>& command = std::nullopt);
   bool check_load_in_flight(const Access& access);
+  bool is_in_unread_line(const Access& access) const;
   std::string place_in_program(Address instruction) const;
   std::optional<std::uint32_t> target_of(std::uint32_t instruction, std::byte opcode) const;
   std::optional<CallFrame> caller_of(const ImageObject& function, std::uint32_t stack_pointer) const;
   std::string describe(const Access& access) const;
   std::string describe(const CommandInFlight& command) const;
+  std::string describe(const LineCommand& line) const;
   bool runs_spu_program() const { return image_ != nullptr && image_->machine == Machine::kSpu; }
   /// Without debug information, the function.
   std::string place_of(Address instruction) const {

@@ -28,6 +28,12 @@ class HeapBlocks {
     blocks_.emplace(lsa, Block{bytes, whole, true});
   }
 
+  /// The bytes of the block in use that begins there; 0: none does.
+  std::uint32_t bytes_at(std::uint32_t lsa) const {
+    const auto found = blocks_.find(lsa);
+    return found == blocks_.end() || !found->second.is_live ? 0 : found->second.bytes;
+  }
+
   /// Its address is freed. @return  a sentence that says what is wrong with that; empty: nothing
   std::string end(std::uint32_t lsa) {
     const auto found = blocks_.find(lsa);
