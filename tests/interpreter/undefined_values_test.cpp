@@ -146,13 +146,21 @@ TEST(UndefinedValues, AreWhatTheResultDependsOn) {
       std::array<Quadword, 14> masks{};
       for (std::uint32_t reg = 10; reg <= 13; ++reg) {
         UndefinedBits bits{};
+        // Bytes here and there, or the words or doubles beside a scalar.
         const int bytes = static_cast<int>(random() % 5);
-        for (int b = 0; b < bytes; ++b)
+        for (int b = 0; b < bytes && round % 4 < 2; ++b)
           bits[random() % 16] = round % 2 == 0 ? 0xFF : static_cast<std::uint8_t>(random());
+        const std::size_t lane = round % 4 == 2 ? 4 : 8;
+        for (std::size_t b = 0; b < bits.size() && round % 4 >= 2; b += lane) {
+          if (random() % 2 == 0)
+            std::fill_n(bits.begin() + static_cast<std::ptrdiff_t>(b), lane, std::uint8_t{0xFF});
+        }
         values.on_instruction(decode(ri16(lqa, reg, 0)), 0, state);
         values.on_load(0, bits);
         masks[reg] = load_quadword(reinterpret_cast<const std::byte*>(bits.data()));
-        for (int w = 0; w < 4; ++w) state.registers[reg][w] = static_cast<std::uint32_t>(random());
+        for (int w = 0; w < 4; ++w)
+          state.registers[reg][w] =
+              round % 3 == 0 && random() % 2 == 0 ? 0 : static_cast<std::uint32_t>(random());
       }
       const auto result_of = [&](SpuState now) {
         execute(now, std::span<std::byte, dma::kLocalStoreBytes>(store), word);
@@ -181,6 +189,52 @@ TEST(UndefinedValues, AreWhatTheResultDependsOn) {
   }
   EXPECT_GT(followed, 100'000u);
   EXPECT_LT(missed, followed / 200) << missed << " of " << followed;
+}
+
+/// The undefined bits of $13 after an instruction of $10, $11 and $12, of which the first two words of $10 are undefined.
+Quadword undefined_after(std::uint32_t word, Quadword r11) {
+  SpuState state;
+  UndefinedValues values(EntryState::kThreadGroup);
+  UndefinedBits bits{};
+  std::fill_n(bits.begin(), 8, std::uint8_t{0xFF});
+  values.on_instruction(decode(ri16(lqa, 10, 0)), 0, state);
+  values.on_load(0, bits);
+  state.registers[10] = from_words(0x40000000, 0x40000000, 0x40000000, 0x40000000);
+  state.registers[11] = r11;
+  values.on_instruction(decode(word), 0, state);
+  values.on_instruction(decode(ri16(stqa, 13, 0)), 0, state);
+  const UndefinedBits stored = values.stored();
+  return load_quadword(reinterpret_cast<const std::byte*>(stored.data()));
+}
+void expect_words(Quadword bits, const std::array<std::uint32_t, 4>& words) {
+  for (int w = 0; w < 4; ++w) EXPECT_EQ(word(bits, w), words[static_cast<std::size_t>(w)]) << "word " << w;
+}
+
+TEST(UndefinedValues, OfAFactorMatterOnlyBesideWhatIsNotZero) {
+  const Quadword other = from_words(0, 0x3F800000, 0, 0x3F800000);
+  for (const Mnemonic multiply : {fm, fma, fms, fnms}) {
+    const std::uint32_t instruction =
+        info_of(multiply).format == Format::kRrr ? rrr(multiply, 13, 10, 11, 12) : rr(multiply, 13, 10, 11);
+    const Quadword undefined = undefined_after(instruction, other);
+    EXPECT_EQ(word(undefined, 0), 0u);
+    EXPECT_NE(word(undefined, 1), 0u);
+    EXPECT_EQ(word(undefined, 2) | word(undefined, 3), 0u);
+  }
+  expect_words(undefined_after(rr(fm, 13, 10, 11), from_words(0x3F800000, 0x3F800000, 0, 0)),
+               {~0u, ~0u, 0, 0});
+  expect_words(undefined_after(rr(fa, 13, 10, 11), Quadword{}), {~0u, ~0u, 0, 0});
+  expect_words(undefined_after(rr(fs, 13, 10, 10), Quadword{}), {0, 0, 0, 0});
+}
+
+TEST(UndefinedValues, MoveWithTheirBytes) {
+  expect_words(undefined_after(ri7(rotqbyi, 13, 10, 4), Quadword{}), {~0u, 0, 0, ~0u});
+  expect_words(undefined_after(ri10(andi, 13, 10, 0xF), Quadword{}), {0xF, 0xF, 0, 0});
+  expect_words(undefined_after(ri10(ori, 13, 10, 0xF), Quadword{}), {~0xFu, ~0xFu, 0, 0});
+  // A zero, ones and 0x80 of a pattern are no copies.
+  expect_words(undefined_after(rrr(shufb, 13, 10, 10, 11), from_words(0x80C0E000, 0x18190A0B, 0, 0x10111213)),
+               {0xFF, 0, ~0u, ~0u});
+  // The pattern itself is undefined.
+  EXPECT_NE(word(undefined_after(rrr(shufb, 13, 11, 11, 10), from_words(1, 2, 3, 4)), 0), 0u);
 }
 
 }  // namespace

@@ -162,8 +162,23 @@ TEST(ToolchainOptions, OfTheLinkerAreItsOwn) {
   EXPECT_TRUE(options.relocatable);
   EXPECT_EQ(options.output, "out.o");
   EXPECT_EQ(options.inputs.size(), 1u);
-  EXPECT_EQ(options.linker, (Words{"-Map", "map", "--defsym", "x=1"}));
+  EXPECT_EQ(options.linker, (Words{"-Map", "map"}));
+  EXPECT_EQ(options.symbols, (Words{"--defsym", "x=1"}));
   EXPECT_EQ(options.meaningless, (Words{"-T script", "--gc-sections", "-z relro"}));
+}
+
+TEST(ToolchainOptions, ForTheLinkerHoldForBothBuildsIfTheyMakeSymbols) {
+  const Options options = parse_compiler_options(
+      {"a.c", "-Wl,--wrap=malloc,--defsym", "-Xlinker", "x=1", "-Wl,-wrap,free"}, Language::kC);
+  EXPECT_EQ(options.symbols, (Words{"--wrap=malloc", "--defsym", "x=1", "-wrap", "free"}));
+  EXPECT_TRUE(options.meaningless.empty());
+}
+
+TEST(ToolchainOptions, ForThePreprocessorComeInListsToo) {
+  const Options options = parse_compiler_options(
+      {"a.c", "-Wp,-MMD,a.d,-DX=1", "-Xpreprocessor", "-U", "-Xpreprocessor", "Y", "-Wp,-MD"}, Language::kC);
+  EXPECT_EQ(options.preprocessor, (Words{"-MMD", "-MF", "a.d", "-DX=1", "-U", "Y", "-MD"}));
+  EXPECT_TRUE(options.meaningless.empty());
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "undefined_values.h"
 
+#include <array>
 #include <cstddef>
 #include <utility>
 
@@ -12,6 +13,7 @@ namespace {
 constexpr Quadword kAllBits{~0u, ~0u, ~0u, ~0u};
 constexpr std::uint32_t kWord = ~0u;
 constexpr std::uint32_t kAddressBits = kQuadwordMask;
+constexpr std::uint64_t kExponents = 0x7FF0000000000000;
 
 bool any(Quadword q) { return _mm_testz_si128((__m128i)q, (__m128i)q) == 0; }
 
@@ -63,6 +65,102 @@ Quadword other_bits(int trial, const Operation& op, std::uint8_t reg, const SpuS
   }
 }
 
+// Most instructions with undefined bits do one of two things, and what becomes of the bits is known without trials.
+
+/// Operands of which each bit of the result copies at most one, or its complement, as long as the control is defined.
+struct Moves {
+  std::uint8_t data = 0;  ///< of `reads`; 0: the instruction is no such one
+  std::uint8_t control = 0;
+  Quadword control_bits{};  ///< those that count
+};
+
+Moves moves_of(Mnemonic mnemonic) {
+  const Quadword low_byte_of_preferred_word{0, 0, 0, 0xFF};
+  using enum Mnemonic;
+  switch (mnemonic) {
+    case rotqby:
+    case rotqbybi:
+    case rotqbi:
+    case rotqmby:
+    case rotqmbybi:
+    case rotqmbi:
+    case shlqby:
+    case shlqbybi:
+    case shlqbi:
+      return {reads::kA, reads::kB, low_byte_of_preferred_word};
+    case rotqbyi:
+    case rotqbii:
+    case rotqmbyi:
+    case rotqmbii:
+    case shlqbyi:
+    case shlqbii:
+    case roti:
+    case rothi:
+    case rotmi:
+    case rothmi:
+    case rotmai:
+    case rotmahi:
+    case shli:
+    case shlhi:
+    case xsbh:
+    case xshw:
+    case xswd:
+    case ori:
+    case orbi:
+    case orhi:
+    case andi:
+    case andbi:
+    case andhi:
+    case xori:
+    case xorbi:
+    case xorhi:
+      return {reads::kA, 0, Quadword{}};
+    case shufb:
+    case selb:
+      return {reads::kA | reads::kB, reads::kC, kAllBits};
+    default:
+      return {};
+  }
+}
+
+/// Bytes of the lanes in which an instruction adds, or multiplies and adds, each lane by itself; 0: it does not.
+int lane_of_sum(Mnemonic mnemonic) {
+  using enum Mnemonic;
+  switch (mnemonic) {
+    case a:
+    case sf:
+    case ai:
+    case sfi:
+    case fa:
+    case fs:
+    case fm:
+    case fma:
+    case fms:
+    case fnms:
+      return 4;
+    case dfa:
+    case dfs:
+    case dfm:
+    case dfma:
+    case dfms:
+    case dfnma:
+    case dfnms:
+      return 8;
+    default:
+      return 0;
+  }
+}
+bool multiplies(Mnemonic mnemonic) {
+  using enum Mnemonic;
+  return mnemonic == fm || mnemonic == fma || mnemonic == fms || mnemonic == fnms || mnemonic == dfm ||
+         mnemonic == dfma || mnemonic == dfms || mnemonic == dfnma || mnemonic == dfnms;
+}
+
+/// All bits of the lanes of which one is set. @param bytes  of a lane, 4 or 8
+Quadword whole_lanes(Quadword bits, int bytes) {
+  return bytes == 4 ? (Quadword)((S32x4)bits != 0) : (Quadword)((S64x2)bits != 0);
+}
+
 }  // namespace
 
 UndefinedValues::UndefinedValues(EntryState entry) {
@@ -104,6 +202,13 @@ void UndefinedValues::follow(const Operation& op, const InstructionInfo& info, c
     if (info.writes_target) undefined_[op.rt] = Quadword{};
     return;
   }
+  if (info.writes_target) {
+    if (const auto known = undefined_without_trials(op, info, state)) {
+      undefined_[op.rt] = *known;
+      from_[op.rt] = from;
+      return;
+    }
+  }
   trial_.fpscr = state.fpscr;
   trial_.has_enhanced_double = state.has_enhanced_double;
   /// The result with these operands.
@@ -123,6 +228,61 @@ void UndefinedValues::follow(const Operation& op, const InstructionInfo& info, c
   if (!info.writes_target) return;
   undefined_[op.rt] = changes;
   from_[op.rt] = from;
+}
+
+/// @return  none: it takes trials. @pre  an operand has undefined bits
+std::optional<Quadword> UndefinedValues::undefined_without_trials(const Operation& op,
+                                                                  const InstructionInfo& info,
+                                                                  const SpuState& state) {
+  if (const Moves moves = moves_of(op.mnemonic); moves.data != 0) {
+    const std::uint8_t control = moves.control == reads::kB ? op.rb : op.rc;
+    const bool has_b = (moves.data & reads::kB) != 0;
+    if (moves.control != 0) {
+      if (any(undefined_[control] & moves.control_bits) || control == op.ra || (has_b && control == op.rb))
+        return {};
+      trial_.registers[control] = state.registers[control];
+    }
+    const auto moved = [&](const auto& of) {
+      trial_.registers[op.ra] = of(op.ra);
+      if (has_b) trial_.registers[op.rb] = of(op.rb);
+      interpreter::compute(trial_, op);
+      return trial_.registers[op.rt];
+    };
+    const Quadword constant = moved([](std::uint8_t) { return Quadword{}; });
+    return constant ^ moved([&](std::uint8_t reg) { return undefined_[reg]; });
+  }
+
+  const int lane = lane_of_sum(op.mnemonic);
+  if (lane == 0) return {};
+  struct Operand {
+    std::uint8_t bit, reg;
+  };
+  // Only where lanes are undefined as a whole, and no operand may cancel another.
+  const Operand operands[] = {{reads::kA, op.ra}, {reads::kB, op.rb}, {reads::kC, op.rc}, {reads::kT, op.rt}};
+  Quadword result{};
+  std::array<Quadword, 2> factors{};
+  std::array<std::uint8_t, 4> used{};
+  std::size_t count = 0;
+  for (const auto& [bit, reg] : operands) {
+    if ((info.reads & bit) == 0) continue;
+    const Quadword undefined = undefined_[reg];
+    for (std::size_t i = 0; i < count; ++i) {
+      if (used[i] == reg && any(undefined)) return {};
+    }
+    used[count++] = reg;
+    if (any(undefined ^ whole_lanes(undefined, lane))) return {};
+    result |= undefined;
+    if (count <= factors.size()) factors[count - 1] = undefined;
+  }
+  if (!multiplies(op.mnemonic)) return result;
+  // A product with zero, or with a denormal that counts as zero, does not depend on the other factor.
+  const Quadword exponent =
+      lane == 4 ? (Quadword)splat_word(0x7F800000) : (Quadword)U64x2{kExponents, kExponents};
+  for (std::size_t i = 0; i < factors.size(); ++i) {
+    const Quadword other = state.registers[used[1 - i]];
+    if (any(factors[i] & ~factors[1 - i] & ~whole_lanes(other & exponent, lane))) return {};
+  }
+  return result;
 }
 
 /// @param bits  of the preferred word: those that count

@@ -3,7 +3,7 @@
 // written. They are followed to where they matter.
 //
 // A bit of a result is undefined if it changes when the undefined bits among the operands do: the instruction is computed
-// again with others in their place. So all instructions are treated alike, and an `and` with a mask, a shuffle, a select
+// again with others in their place, unless it moves bits or adds whole lanes, where that is known. So all instructions are treated alike, and an `and` with a mask, a shuffle, a select
 // or a count of shifts makes of undefined bits what it makes of them on the SPU. What is reported does depend on them; of a
 // comparison that tells few values apart something may be missed.
 
@@ -30,6 +30,8 @@ class UndefinedValues {
 
  private:
   void follow(const Operation& op, const InstructionInfo& info, const SpuState& state);
+  std::optional<Quadword> undefined_without_trials(const Operation& op, const InstructionInfo& info,
+                                                   const SpuState& state);
   std::optional<UndefinedUse> use_of(std::uint8_t reg, std::uint32_t bits, const SpuState& state,
                                      UndefinedUse::Kind kind);
   std::optional<UndefinedUse> use(const Operation& op, const InstructionInfo& info, const SpuState& state);
