@@ -3,9 +3,10 @@
 // written. They are followed to where they matter.
 //
 // A bit of a result is undefined if it changes when the undefined bits among the operands do: the instruction is computed
-// again with others in their place, unless it moves bits or adds whole lanes, where that is known. So all instructions are treated alike, and an `and` with a mask, a shuffle, a select
-// or a count of shifts makes of undefined bits what it makes of them on the SPU. What is reported does depend on them; of a
-// comparison that tells few values apart something may be missed.
+// again with others in their place. So all instructions are treated alike, and an `and` with a mask, a shuffle, a select
+// or a count of shifts makes of undefined bits what it makes of them on the SPU. Where an instruction moves bits or adds
+// whole lanes, that is known without. What is reported does depend on them; of a comparison that tells few values apart
+// something may be missed.
 
 #include <array>
 #include <optional>
