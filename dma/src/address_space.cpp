@@ -204,7 +204,16 @@ std::variant<std::byte*, Fault> AddressSpace::resolve(EffectiveAddress ea, std::
   if (local_stores_->contains(ea) && local_stores_->is_register(ea)) {
     return local_stores_->resolve_register(ea, bytes, wanted == SpeAccess::kWrite);
   }
-  if (is_host_program() && !local_stores_->contains(ea)) return host_->resolve(ea, bytes, wanted);
+  if (is_host_program() && !local_stores_->contains(ea)) {
+    auto resolved = host_->resolve(ea, bytes, wanted);
+    Fault* const fault = std::get_if<Fault>(&resolved);
+    if (fault != nullptr && fault->rule == Rule::kEaNotMapped && local_stores_->is_sum_of_two(ea))
+      fault->detail +=
+          "; EA is a local store's plus a pointer of a kernel built for the host, which is no offset: its "
+          "kernel "
+          "sends (unsigned)pointer & 0x3FFFF";
+    return resolved;
+  }
   const std::shared_lock lock(registry_mutex_);
   const auto found = last_at_or_below(ea);
   if (found == registry_.end() || !found->second.mapping.contains(ea)) {

@@ -34,6 +34,12 @@ class LocalStores {
   bool contains(EffectiveAddress ea) const {
     return ea.value - base_.value < ports_.size() * kLocalStoreStrideBytes;
   }
+  /// Whether it may be the sum of an SPE's local store and an address in one.
+  bool is_sum_of_two(EffectiveAddress ea) const {
+    const std::uint64_t above = ea.value - 2 * base_.value;
+    return above < 2 * ports_.size() * kLocalStoreStrideBytes &&
+           above % kLocalStoreStrideBytes < kLocalStoreBytes;
+  }
   /// @pre contains(ea), here and below.
   int spe_of(EffectiveAddress ea) const {
     SC_ASSERT(contains(ea), "{} does not belong to an SPE", ea);

@@ -194,6 +194,19 @@ struct alignas(128) Line {
   std::array<std::uint32_t, 32> words{};
 };
 
+/// What a program for the Cell does with the offset that its SPU side has sent: here that is a pointer.
+TEST_F(HostProgramTest, ALocalStoreAndAPointerIntoOneAreNoAddress) {
+  const EffectiveAddress one = space_.local_store_ea(1), two = space_.local_store_ea(2);
+  const auto detail_at = [&](std::uint64_t ea) {
+    auto resolved = space_.resolve({ea}, 16, SpeAccess::kWrite);
+    const Fault* const fault = std::get_if<Fault>(&resolved);
+    return fault == nullptr || fault->rule != Rule::kEaNotMapped ? "" : fault->detail;
+  };
+  const char* const hint = "its kernel sends (unsigned)pointer & 0x3FFFF";
+  EXPECT_NE(detail_at(one.value + two.value + 0x1E00).find(hint), std::string::npos);
+  EXPECT_EQ(detail_at(one.value + two.value + kLocalStoreBytes).find(hint), std::string::npos);
+}
+
 TEST_F(HostProgramTest, APlainStoreOfAHostThreadLosesTheReservation) {
   Line line;
   ASSERT_FALSE(issue(MfcOpcode::getllar, 0, &line, 128));
