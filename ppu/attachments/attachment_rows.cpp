@@ -1,18 +1,15 @@
 #include "ppu/attachments/attachment_rows.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <stdexcept>
-#include <string>
 
+#include "ppu/attachments/patch_spread.h"
+#include "ppu/attachments/turned_patches.h"
 #include "ppu/numbers/turning.h"
 #include "ppu/numbers/wide_inverse.h"
 #include "softcell/base/assert.h"
-#include "softcell/base/text.h"
 
 namespace softcell::ppu {
 namespace {
@@ -23,109 +20,6 @@ constexpr float kMostPushInCells = 0.25f;
 constexpr float kPushShareOfPlaces = 0.2f;
 // Up to this gap an attachment holds particles, and all angular momentum that it gives is taken back.
 constexpr float kMostApartInCells = 0.5f;
-
-/// Mass, middle and spread of a patch.
-template <int kDimension>
-struct Spread {
-  using Vector = Eigen::Vector<float, kDimension>;
-  using Matrix = Eigen::Matrix<float, kDimension, kDimension>;
-  float mass = 0;
-  Vector middle = Vector::Zero();
-  Matrix root = Matrix::Zero();  // L, lower triangular; L L' = S
-  Matrix inverse_of_root;
-
-  void add_masses(const PatchParticles<kDimension>& patch) {
-    for (std::size_t i = 0; i < patch.particles.size(); ++i) {
-      mass += patch.masses[i];
-      middle += patch.masses[i] * patch.positions[i];
-    }
-  }
-  void add_squares(const PatchParticles<kDimension>& patch) {
-    for (std::size_t i = 0; i < patch.particles.size(); ++i) {
-      const Vector r = patch.positions[i] - middle;
-      root += patch.masses[i] / mass * (r * r.transpose());
-    }
-  }
-  /// @throws std::invalid_argument  the particles lie in a plane (in two dimensions on a line), or nearly so.
-  void take_root() {
-    constexpr float kFlat = 1e-3f;
-    const Eigen::LLT<Matrix> cholesky(root);
-    root = cholesky.matrixL();
-    const float thinnest = root.diagonal().minCoeff(), thickest = root.diagonal().maxCoeff();
-    if (cholesky.info() != Eigen::Success || !(thinnest * thinnest > kFlat * thickest * thickest))
-      throw std::invalid_argument(kDimension == 3 ? "a hinge, or a weld of two soft bodies, needs patches of "
-                                                    "at least four particles that do not lie in a plane"
-                                                  : "a hinge, or a weld of two soft bodies, needs patches of "
-                                                    "at least three particles that do not lie on a line");
-    inverse_of_root = root.inverse();
-  }
-};
-
-template <int kDimension>
-Spread<kDimension> spread_of(const PatchParticles<kDimension>& a,
-                             const PatchParticles<kDimension>* b = nullptr) {
-  Spread<kDimension> spread;
-  spread.add_masses(a);
-  if (b != nullptr) spread.add_masses(*b);
-  SC_ASSERT(spread.mass > 0, "a patch of {} particles has a mass of {} kg", a.particles.size(), spread.mass);
-  spread.middle /= spread.mass;
-  spread.add_squares(a);
-  if (b != nullptr) spread.add_squares(*b);
-  spread.take_root();
-  return spread;
-}
-
-/// The corners of a regular simplex of dimension + 1 corners, of which any two have the product -1.
-template <int kDimension>
-std::vector<Eigen::Vector<float, kDimension>> simplex() {
-  if constexpr (kDimension == 3) {
-    return {{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}};
-  } else {
-    const float height = std::sqrt(1.5f), half = std::sqrt(0.5f);
-    return {{0, 2 * half}, {height, -half}, {-height, -half}};
-  }
-}
-
-/// The patches of an attachment, which turn as one rigid body.
-template <int kDimension>
-class TurnedPatches {
- public:
-  using Vector = Eigen::Vector<double, kDimension>;
-
-  void add(const AttachedBody<kDimension>& body, std::span<const std::uint32_t> particles) {
-    for (const std::uint32_t i : particles) {
-      const double mass = 1 / double{body.inverse_masses[i]};
-      const Vector position = body.positions[i].template cast<double>();
-      mass_ += mass;
-      sum_ += mass * position;
-      squares_ += mass * position * position.transpose();
-    }
-    patches_[count_++] = {&body, particles};
-  }
-  /// Adds an angular momentum and no momentum. In three dimensions particles on one line do not turn.
-  void turn(const turning::Axial<kDimension>& spin) const {
-    const Vector middle = sum_ / mass_;
-    const auto inertia = turning::inertia_of((squares_ - mass_ * middle * middle.transpose()).eval());
-    const turning::Axial<kDimension> omega = turning::turn_of(inertia, spin);
-    for (const auto& [body, particles] : std::span(patches_).first(count_))
-      for (const std::uint32_t i : particles) {
-        const Vector arm = body->positions[i].template cast<double>() - middle;
-        body->velocities[i] += turning::cross(omega, arm).template cast<float>();
-      }
-  }
-
- private:
-  struct One {
-    const AttachedBody<kDimension>* body;
-    std::span<const std::uint32_t> particles;
-  };
-  std::array<One, 2> patches_{};
-  std::size_t count_ = 0;
-  double mass_ = 0;
-  Vector sum_ = Vector::Zero();
-  Eigen::Matrix<double, kDimension, kDimension> squares_ =
-      Eigen::Matrix<double, kDimension, kDimension>::Zero();
-};
 
 /// Inverts a matrix by the formulas for its size, which is known at compile time: a factorisation for all sizes takes ten times as long to
 /// compile.
@@ -142,82 +36,6 @@ Matrix inverse_of_few(const Matrix& matrix) {
 }
 
 }  // namespace
-
-template <int kDimension>
-Eigen::Vector<float, kDimension> PatchParticles<kDimension>::middle() const {
-  Eigen::Vector<float, kDimension> sum = Eigen::Vector<float, kDimension>::Zero();
-  float mass = 0;
-  for (std::size_t i = 0; i < particles.size(); ++i) {
-    sum += masses[i] * positions[i];
-    mass += masses[i];
-  }
-  return sum / mass;
-}
-
-template <int kDimension>
-auto AttachmentRows<kDimension>::Side::of(const Place& place, std::span<const Vector> values) const
-    -> Vector {
-  if (place.count == 1) return values[particle[place.first]];
-  Vector sum = Vector::Zero();
-  for (std::uint32_t i = place.first; i < place.first + place.count; ++i)
-    sum += share[i] * values[particle[i]];
-  return sum;
-}
-
-template <int kDimension>
-void AttachmentRows<kDimension>::Side::add(const Place& place, const AttachedBody<kDimension>& body,
-                                           std::span<Vector> values, const Vector& impulse) const {
-  for (std::uint32_t i = place.first; i < place.first + place.count; ++i)
-    values[particle[i]] += share[i] * body.inverse_masses[particle[i]] * impulse;
-}
-
-template <int kDimension>
-float AttachmentRows<kDimension>::Side::mobility(const Place& place,
-                                                 std::span<const float> inverse_masses) const {
-  float sum = 0;
-  for (std::uint32_t i = place.first; i < place.first + place.count; ++i)
-    sum += share[i] * share[i] * inverse_masses[particle[i]];
-  return sum;
-}
-
-template <int kDimension>
-auto AttachmentRows<kDimension>::Side::append(std::uint32_t its_particle, float its_share) -> Place {
-  particle.push_back(its_particle);
-  share.push_back(its_share);
-  return {static_cast<std::uint32_t>(particle.size() - 1), 1};
-}
-
-template <int kDimension>
-auto AttachmentRows<kDimension>::Side::append(const PatchParticles<kDimension>& patch, const Vector& point)
-    -> Place {
-  const Spread<kDimension> spread = spread_of(patch);
-  constexpr float kFarthest = 12;
-  const Vector in_patches = spread.inverse_of_root * (point - spread.middle);
-  const float reaches = in_patches.norm();
-  if (reaches > kFarthest)
-    throw std::invalid_argument("a patch is held at a place " + base::shortest(reaches) +
-                                " times as far from its middle as the patch reaches; it may be " +
-                                base::shortest(kFarthest) +
-                                " times as far: a larger patch can be held there");
-  // S^-1 (p - c)
-  const Vector pull = spread.inverse_of_root.transpose() * in_patches;
-  const Place place{static_cast<std::uint32_t>(particle.size()),
-                    static_cast<std::uint32_t>(patch.particles.size())};
-  for (std::size_t i = 0; i < patch.particles.size(); ++i)
-    append(patch.particles[i],
-           patch.masses[i] / spread.mass * (1 + pull.dot(Vector(patch.positions[i] - spread.middle))));
-  return place;
-}
-
-template <int kDimension>
-auto AttachmentRows<kDimension>::Side::append_middle(const PatchParticles<kDimension>& patch) -> Place {
-  const Place place{static_cast<std::uint32_t>(particle.size()),
-                    static_cast<std::uint32_t>(patch.particles.size())};
-  float mass = 0;
-  for (const float m : patch.masses) mass += m;
-  for (std::size_t i = 0; i < patch.particles.size(); ++i) append(patch.particles[i], patch.masses[i] / mass);
-  return place;
-}
 
 template <int kDimension>
 void AttachmentRows<kDimension>::add_row(const Vector& point, const PatchParticles<kDimension>& a,
@@ -317,21 +135,6 @@ void AttachmentRows<kDimension>::apply(const Row& row, const Vector& impulse) {
     b_.add(row.b, *sides_.b, sides_.b->velocities, -impulse);
   else if (sides_.rigid != nullptr && sides_.rigid->inverse_mass != 0)
     AttachedRigid<kDimension>::apply(*sides_.rigid, row.point, -impulse);
-}
-
-template <int kDimension>
-void AttachmentRows<kDimension>::Side::forget_pushes() {
-  pushed.assign(particle.size(), Vector::Zero());
-}
-
-template <int kDimension>
-void AttachmentRows<kDimension>::Side::push(const Place& place, const AttachedBody<kDimension>& body,
-                                            const Vector& impulse) {
-  for (std::uint32_t i = place.first; i < place.first + place.count; ++i) {
-    const Vector change = share[i] * body.inverse_masses[particle[i]] * impulse;
-    body.pushes[particle[i]] += change;
-    pushed[number_of(place, i)] += change;
-  }
 }
 
 /// Of soft bodies only: a rigid one is moved by its engine.
@@ -665,13 +468,6 @@ void AttachmentRows<kDimension>::finish() {
   if (sides_.b != nullptr) limit_pushes(b_, *sides_.b);
 }
 
-template <int kDimension>
-std::span<const std::uint32_t> AttachmentRows<kDimension>::patch_of(const Side& side,
-                                                                    const Place& of_first_row) {
-  const std::span<const std::uint32_t> all = side.particle;
-  return of_first_row.count == 1 ? all : all.subspan(of_first_row.first, of_first_row.count);
-}
-
 /// A rope's impulse lies on the line between its ends, so it adds none. A side that does not move takes spin as it takes momentum.
 template <int kDimension>
 bool AttachmentRows<kDimension>::takes_back_spin() const {
@@ -696,7 +492,7 @@ auto AttachmentRows<kDimension>::spin_of_pushes() const -> Axial {
   const AttachedBody<kDimension>& body = sides_.a;
   const double step = double{step_};
   Axial sum = turning::cross(Wide::Zero().eval(), Wide::Zero().eval()), of_arcs = sum;
-  for (const std::uint32_t i : patch_of(a_, rows_.front().a)) {
+  for (const std::uint32_t i : a_.patch(rows_.front().a)) {
     const double mass = 1 / double{body.inverse_masses[i]};
     const Vector& place = body.positions[i];
     const Wide way = step * body.pushes[i].template cast<double>();
@@ -741,8 +537,8 @@ void AttachmentRows<kDimension>::take_back_spin(bool agrees) {
     }
   if (pushes_soft_body_only() && agrees) given += spin_of_pushes();
   TurnedPatches<kDimension> patches;
-  patches.add(sides_.a, patch_of(a_, rows_.front().a));
-  if (sides_.b != nullptr) patches.add(*sides_.b, patch_of(b_, rows_.front().b));
+  patches.add(sides_.a, a_.patch(rows_.front().a));
+  if (sides_.b != nullptr) patches.add(*sides_.b, b_.patch(rows_.front().b));
   patches.turn(-given);
 }
 
@@ -762,8 +558,6 @@ AttachmentEnds<kDimension> AttachmentRows<kDimension>::ends(std::span<const Vect
   return ends;
 }
 
-template struct PatchParticles<2>;
-template struct PatchParticles<3>;
 template class AttachmentRows<2>;
 template class AttachmentRows<3>;
 

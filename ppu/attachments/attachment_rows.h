@@ -29,23 +29,13 @@
 #include <span>
 #include <vector>
 
+#include "ppu/attachments/attached_body.h"
 #include "ppu/attachments/attached_rigid.h"
+#include "ppu/attachments/patch_places.h"
 #include "ppu/numbers/turning.h"
 #include "softcell/soft_bodies/attachment.h"
 
 namespace softcell::ppu {
-
-/// A soft body in one substep.
-template <int kDimension>
-struct AttachedBody {
-  using Vector = Eigen::Vector<float, kDimension>;
-  std::span<const Vector> positions;      ///< at the substep's beginning
-  std::span<Vector> velocities;           ///< changed by attachments
-  std::span<Vector> pushes;               ///< m/s, for this substep only
-  std::span<const float> inverse_masses;  ///< 1/kg; 0 of a body that sleeps
-  float spacing = 0;                      ///< metres, of a cell
-  bool asleep = false;                    ///< an attachment does not move it
-};
 
 /// Where a frame is at the substep's beginning and, if only the program moves it, at its end.
 template <int kDimension>
@@ -71,16 +61,6 @@ struct HeldParticle {
   Eigen::Vector<float, kDimension> velocity = Eigen::Vector<float, kDimension>::Zero();  ///< m/s
   float most_impulse = std::numeric_limits<float>::infinity();  ///< kg m/s: the attachment breaks above it
   std::uint32_t attachment = 0;                                 ///< its number in the substep
-};
-
-/// The particles of a patch as they are when it is attached.
-template <int kDimension>
-struct PatchParticles {
-  std::vector<std::uint32_t> particles;  ///< ascending
-  std::vector<Eigen::Vector<float, kDimension>> positions;
-  std::vector<float> masses;  ///< kg
-
-  Eigen::Vector<float, kDimension> middle() const;  ///< of mass
 };
 
 template <int kDimension>
@@ -153,34 +133,11 @@ class AttachmentRows {
  private:
   friend class AttachmentRecords<kDimension>;
 
-  /// A range of particles and of their shares in a place, which sum to 1.
-  struct Place {
-    std::uint32_t first = 0, count = 0;
-  };
+  using Place = PatchPlace;
+  using Side = PatchPlaces<kDimension>;
   using Axial = turning::Axial<kDimension>;
   bool pushes_soft_body_only() const;
   Axial spin_of_pushes() const;
-  struct Side {
-    std::vector<std::uint32_t> particle;
-    std::vector<float> share;
-    // In m/s, of this substep: what these rows gave each particle, by number_of().
-    std::vector<Vector> pushed = {};
-
-    /// The number of an entry's particle without repetitions: places of several particles all have the same particles in the same order.
-    static std::size_t number_of(const Place& place, std::uint32_t entry) {
-      return place.count == 1 ? entry : entry - place.first;
-    }
-    void forget_pushes();
-    void push(const Place& place, const AttachedBody<kDimension>& body, const Vector& impulse);
-    Vector of(const Place& place, std::span<const Vector> values) const;
-    void add(const Place& place, const AttachedBody<kDimension>& body, std::span<Vector> values,
-             const Vector& impulse) const;
-    float mobility(const Place& place, std::span<const float> inverse_masses) const;
-    Place append(std::uint32_t particle, float share);
-    /// Appends the place `point` of a patch.
-    Place append(const PatchParticles<kDimension>& patch, const Vector& point);
-    Place append_middle(const PatchParticles<kDimension>& patch);
-  };
   struct Row {
     Place a, b;
     Vector own = Vector::Zero();      // in the frame
@@ -227,8 +184,6 @@ class AttachmentRows {
   bool carries_all() const { return is_pressed_ && !breaks_off_; }
   void limit_pushes(const Side& side, const AttachedBody<kDimension>& body) const;
   Vector carried_impulse() const;
-  /// The particles of a patch, each once.
-  static std::span<const std::uint32_t> patch_of(const Side& side, const Place& of_first_row);
 
   AttachmentSettings<kDimension> settings_;
   float length_ = 0;  // of a rope
