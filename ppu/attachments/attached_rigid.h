@@ -6,7 +6,7 @@
 #include <Eigen/LU>
 
 #include "ppu/numbers/wide_inverse.h"
-#include "ppu/surfaces/obstacle.h"
+#include "ppu/obstacles/obstacle.h"
 
 namespace softcell::ppu {
 

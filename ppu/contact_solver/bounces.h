@@ -18,7 +18,7 @@
 #include "ppu/contacts/contact_body.h"
 #include "ppu/contacts/contact_group.h"
 #include "ppu/numbers/disjoint_sets.h"
-#include "ppu/surfaces/contact_rigid.h"
+#include "ppu/obstacles/contact_rigid.h"
 
 namespace softcell::ppu {
 

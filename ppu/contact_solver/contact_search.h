@@ -15,8 +15,8 @@
 #include "ppu/contacts/end_cells.h"
 #include "ppu/contacts/sharp_contacts.h"
 #include "ppu/contacts/swept_contacts.h"
-#include "ppu/surfaces/contact_rigid.h"
-#include "ppu/surfaces/obstacle.h"
+#include "ppu/obstacles/contact_rigid.h"
+#include "ppu/obstacles/obstacle.h"
 
 namespace softcell::ppu {
 

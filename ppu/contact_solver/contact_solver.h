@@ -25,8 +25,8 @@
 #include "ppu/contacts/body_in_substep.h"
 #include "ppu/contacts/contact_body.h"
 #include "ppu/numbers/disjoint_sets.h"
+#include "ppu/obstacles/obstacle.h"
 #include "ppu/supports/supports.h"
-#include "ppu/surfaces/obstacle.h"
 
 namespace softcell::ppu {
 

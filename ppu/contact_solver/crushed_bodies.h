@@ -11,7 +11,7 @@
 #include "ppu/contact_solver/lost_spin.h"
 #include "ppu/contacts/contact_body.h"
 #include "ppu/contacts/crushed_cells.h"
-#include "ppu/surfaces/contact_rigid.h"
+#include "ppu/obstacles/contact_rigid.h"
 
 namespace softcell::ppu {
 

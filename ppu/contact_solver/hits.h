@@ -10,7 +10,7 @@
 #include "ppu/contact_solver/bounces.h"
 #include "ppu/contact_solver/contact_groups.h"
 #include "ppu/contacts/contact_body.h"
-#include "ppu/surfaces/contact_rigid.h"
+#include "ppu/obstacles/contact_rigid.h"
 
 namespace softcell::ppu {
 

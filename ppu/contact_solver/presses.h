@@ -6,8 +6,8 @@
 
 #include "ppu/contact_solver/contact_groups.h"
 #include "ppu/contacts/contact_body.h"
+#include "ppu/obstacles/contact_rigid.h"
 #include "ppu/supports/supported_set.h"
-#include "ppu/surfaces/contact_rigid.h"
 
 namespace softcell::ppu {
 

@@ -10,7 +10,7 @@
 #include "contact_solve_job.h"
 #include "ppu/contact_solver/contact_worker.h"
 #include "ppu/numbers/disjoint_sets.h"
-#include "ppu/surfaces/contact_rigid.h"
+#include "ppu/obstacles/contact_rigid.h"
 
 namespace softcell::ppu {
 

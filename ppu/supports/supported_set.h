@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "ppu/numbers/skyline_factor.h"
+#include "ppu/obstacles/contact_rigid.h"
+#include "ppu/obstacles/rigid_links.h"
 #include "ppu/supports/link_rows.h"
-#include "ppu/surfaces/contact_rigid.h"
-#include "ppu/surfaces/rigid_links.h"
 
 namespace softcell::ppu {
 

@@ -14,9 +14,9 @@
 #include <vector>
 
 #include "ppu/numbers/disjoint_sets.h"
+#include "ppu/obstacles/contact_rigid.h"
+#include "ppu/obstacles/rigid_links.h"
 #include "ppu/supports/supported_set.h"
-#include "ppu/surfaces/contact_rigid.h"
-#include "ppu/surfaces/rigid_links.h"
 
 namespace softcell::ppu {
 

@@ -1,4 +1,4 @@
-#include "ppu/surfaces/triangle_boxes.h"
+#include "ppu/obstacles/triangle_boxes.h"
 
 namespace softcell::ppu {
 

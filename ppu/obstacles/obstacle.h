@@ -10,7 +10,7 @@
 #include <cstdint>
 #include <span>
 
-#include "ppu/surfaces/contact_rigid.h"
+#include "ppu/obstacles/contact_rigid.h"
 #include "softcell/soft_bodies/mesh.h"
 
 namespace softcell::ppu {

@@ -8,10 +8,10 @@
 #include <span>
 #include <vector>
 
-#include "ppu/surfaces/corner_set.h"
-#include "ppu/surfaces/edge_set.h"
-#include "ppu/surfaces/obstacle.h"
-#include "ppu/surfaces/triangle_boxes.h"
+#include "ppu/obstacles/corner_set.h"
+#include "ppu/obstacles/edge_set.h"
+#include "ppu/obstacles/obstacle.h"
+#include "ppu/obstacles/triangle_boxes.h"
 
 namespace softcell::ppu {
 

@@ -3,7 +3,7 @@
 
 #include <Eigen/Core>
 
-#include "softcell/soft_bodies/lattice.h"
+#include "softcell/soft_bodies/mesh.h"
 
 namespace softcell::ppu {
 

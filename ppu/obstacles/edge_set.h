@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-#include "ppu/surfaces/exact_point.h"
+#include "ppu/obstacles/exact_point.h"
 
 namespace softcell::ppu {
 

@@ -1,4 +1,4 @@
-#include "ppu/surfaces/known_triangles.h"
+#include "ppu/obstacles/known_triangles.h"
 
 #include <Eigen/Geometry>
 #include <cstddef>

@@ -1,4 +1,4 @@
-#include "ppu/surfaces/obstacle.h"
+#include "ppu/obstacles/obstacle.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "ppu/surfaces/moved_by_place.h"
+#include "ppu/obstacles/moved_by_place.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>

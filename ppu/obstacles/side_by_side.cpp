@@ -1,4 +1,4 @@
-#include "ppu/surfaces/side_by_side.h"
+#include "ppu/obstacles/side_by_side.h"
 
 #include <Eigen/Geometry>
 #include <array>

@@ -1,4 +1,4 @@
-#include "ppu/surfaces/triangle_sheets.h"
+#include "ppu/obstacles/triangle_sheets.h"
 
 #include <algorithm>
 #include <numeric>

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "ppu/surfaces/four_boxes.h"
+#include "ppu/mesh/four_boxes.h"
 
 namespace softcell::ppu {
 

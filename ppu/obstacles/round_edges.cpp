@@ -1,4 +1,4 @@
-#include "ppu/surfaces/round_edges.h"
+#include "ppu/obstacles/round_edges.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>

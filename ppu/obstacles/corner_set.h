@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "ppu/surfaces/exact_point.h"
+#include "ppu/obstacles/exact_point.h"
 
 namespace softcell::ppu {
 
