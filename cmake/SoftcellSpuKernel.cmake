@@ -232,9 +232,14 @@ function(softcell_add_spu_kernel name)
     return()
   endif()
   set(image ${CMAKE_CURRENT_BINARY_DIR}/${name}.spu.elf)
-  softcell_precompile_sdk(softcell_kernel_headers)
+  # Clang refuses precompiled headers of another dialect, and a project's own may have GNU's extensions.
+  set(dialect)
+  if(NOT DEFINED CMAKE_CXX_EXTENSIONS OR CMAKE_CXX_EXTENSIONS)
+    set(dialect gnu_)
+  endif()
+  softcell_precompile_sdk(softcell_${dialect}kernel_headers)
   softcell_compile_spu_sources(${name}_objects SOURCES ${arg_SOURCES} INCLUDES ${arg_INCLUDES} ${warnings} OPTIONS ${arg_OPTIONS}
-    HEADERS softcell_kernel_headers)
+    HEADERS softcell_${dialect}kernel_headers)
   softcell_link_spu_image(${name} IMAGE ${image} CHECKED 0 OBJECTS ${name}_objects
     STACK_BYTES ${arg_STACK_BYTES} BUDGET_BYTES ${arg_BUDGET_BYTES} RESIDENT_AT ${arg_RESIDENT_AT})
   add_custom_target(${name}_image ALL DEPENDS ${image})
@@ -248,9 +253,9 @@ function(softcell_add_spu_kernel name)
   if(NOT arg_UNCHECKED_ONLY)
     softcell_report_objects(accesses)
     set(checked_image ${CMAKE_CURRENT_BINARY_DIR}/${name}.checked.spu.elf)
-    softcell_precompile_sdk(softcell_checked_kernel_headers ${SOFTCELL_CHECKED_FLAGS})
+    softcell_precompile_sdk(softcell_checked_${dialect}kernel_headers ${SOFTCELL_CHECKED_FLAGS})
     softcell_compile_spu_sources(${name}_checked_objects SOURCES ${arg_SOURCES} INCLUDES ${arg_INCLUDES}
-        HEADERS softcell_checked_kernel_headers OPTIONS ${SOFTCELL_CHECKED_FLAGS} ${arg_OPTIONS} ${warnings})
+        HEADERS softcell_checked_${dialect}kernel_headers OPTIONS ${SOFTCELL_CHECKED_FLAGS} ${arg_OPTIONS} ${warnings})
     math(EXPR checked_stack "${arg_STACK_BYTES} + ${SOFTCELL_CHECKED_STACK_BYTES}")
     softcell_link_spu_image(${name}_checked IMAGE ${checked_image} CHECKED 1
       OBJECTS ${name}_checked_objects softcell_report_accesses STACK_BYTES ${checked_stack} BUDGET_BYTES 262144

@@ -45,7 +45,7 @@ add("turned", 2.75, "#2E7FC2", function(_, _, corner)
 end)
 
 return {
-  title = "figure 4.5: what is within a cell goes with its corners",
+  title = "what is within a cell goes with its corners (2008 report, figure 4.5)",
   world = { gravity = 0, frames = 180 },
   pictures = { 119 },
   camera = { eye = { 0, 1.5, 14 }, target = { 0, 1.25, 0 }, tan_half_fov_y = 0.165, near = 5, far = 30 },

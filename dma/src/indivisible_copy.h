@@ -1,5 +1,5 @@
 #pragma once
-// Copies whose units arrive whole, whoever looks on: a kernel that polls its local store, a PPU thread with a
+// Copies whose units arrive whole for every observer: a kernel that polls its local store, a PPU thread with a
 // std::atomic_ref, another SPE's DMA.
 
 #include <cstddef>

@@ -58,11 +58,11 @@ class LocalStores {
 
   /// @param writes  whether it is a write, the only access that a register takes.
   /// @pre is_register(ea)
-  /// @return  a pointer to stand for the register, behind which is nothing: on_write() takes the value.
+  /// @return  a pointer that stands for the register. No value is stored there: on_write() passes it on.
   std::variant<std::byte*, Fault> resolve_register(EffectiveAddress ea, std::uint64_t bytes, bool writes);
 
-  /// Tells the SPE of a write, before its bytes arrive: whoever sees them finds them announced.
-  /// @return  whether it went to a register, which has taken the value; then there are no bytes to copy.
+  /// Tells the SPE of a write before its bytes arrive, so that nobody sees bytes that were not announced.
+  /// @return  whether the write went to a register, which has the value now; then there are no bytes to copy.
   bool on_write(EffectiveAddress ea, const std::byte* from, std::uint32_t bytes);
 
  private:

@@ -88,10 +88,10 @@ struct Reservations::State {
     std::mutex mutex;
   };
   struct alignas(kHostLineBytes) Reservation {
-    // Made by its holder, with the line's lock; lost or given up by whoever has the line's lock.
+    // The holder sets it under the line's lock. Any thread that has this lock may clear it: it is lost or given up.
     std::atomic<std::uint64_t> line{kNoLine};
-    // The holder's own: the line whose lock it must take before it can be sure that no loss is still being
-    // told.
+    // For the holder alone: the line whose lock it must take to be sure that the listener is not just being told
+    // of a loss.
     std::uint64_t last_line = kNoLine;
     ReservationListener* listener = nullptr;
   };
@@ -209,8 +209,8 @@ void Reservations::State::leave_place(int place) {
   places_taken.reset(static_cast<std::size_t>(place));
 }
 
-// With the lock of the line that was reserved last: whoever loses it to a write tells so with that lock held,
-// so that the listener hears nothing of it afterwards.
+// Takes the lock of the line that was reserved last: a write that ends the reservation tells the listener with that lock held,
+// so the listener hears nothing after this.
 void Reservations::State::release(int place) {
   Reservation& own = reservations[place];
   if (own.last_line == kNoLine) return;

@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-#include "ppu/contacts/attachment_patch.h"
+#include "ppu/attachments/attachment_patch.h"
 #include "softcell/base/assert.h"
 
 namespace softcell::ppu {

@@ -14,10 +14,10 @@
 #include <utility>
 #include <vector>
 
+#include "ppu/attachments/attachment_links.h"
+#include "ppu/attachments/attachments.h"
 #include "ppu/box2d/box2d_body.h"
 #include "ppu/box2d/box2d_filter.h"
-#include "ppu/contacts/attachment_links.h"
-#include "ppu/contacts/attachments.h"
 #include "softcell/soft_bodies/attachment.h"
 
 namespace softcell::ppu {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "ppu/box2d/box2d_obstacles.h"
-#include "ppu/surfaces/rigid_links.h"
+#include "ppu/obstacles/rigid_links.h"
 
 namespace softcell::ppu {
 

@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "ppu/box2d/box2d_body.h"
-#include "ppu/surfaces/moved_by_place.h"
-#include "ppu/surfaces/obstacle.h"
+#include "ppu/obstacles/moved_by_place.h"
+#include "ppu/obstacles/obstacle.h"
 #include "softcell/soft_bodies/contact.h"
 
 namespace softcell::ppu {

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "ppu/surfaces/rigid_links.h"
+#include "ppu/obstacles/rigid_links.h"
 
 namespace softcell::ppu {
 

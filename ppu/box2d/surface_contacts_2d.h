@@ -10,14 +10,14 @@
 #include <utility>
 #include <vector>
 
+#include "ppu/attachments/flat_attachments.h"
 #include "ppu/bodies/known_models.h"
 #include "ppu/box2d/box2d_attachments.h"
 #include "ppu/box2d/box2d_body.h"
 #include "ppu/box2d/box2d_links.h"
 #include "ppu/box2d/box2d_obstacles.h"
 #include "ppu/box2d/rest.h"
-#include "ppu/contacts/contact_solver.h"
-#include "ppu/contacts/flat_attachments.h"
+#include "ppu/contact_solver/contact_solver.h"
 #include "ppu/contacts/touch_log.h"
 #include "ppu/surfaces/cell_finder.h"
 #include "ppu/surfaces/flat_layer.h"

@@ -8,7 +8,7 @@
 
 #include "ppu/bullet/bullet_obstacles.h"
 #include "ppu/numbers/disjoint_sets.h"
-#include "ppu/surfaces/rigid_links.h"
+#include "ppu/obstacles/rigid_links.h"
 
 namespace softcell::ppu {
 

@@ -24,7 +24,7 @@
 #include "ppu/bullet/mesh_triangles.h"
 #include "ppu/numbers/deterministic_math.h"
 #include "ppu/numbers/keep_each_once.h"
-#include "ppu/surfaces/round_edges.h"
+#include "ppu/obstacles/round_edges.h"
 #include "softcell/base/assert.h"
 
 namespace softcell::ppu {

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "ppu/bullet/convex_hull.h"
-#include "ppu/surfaces/moved_by_place.h"
-#include "ppu/surfaces/obstacle.h"
+#include "ppu/obstacles/moved_by_place.h"
+#include "ppu/obstacles/obstacle.h"
 #include "softcell/soft_bodies/mesh.h"
 
 class btCompoundShape;

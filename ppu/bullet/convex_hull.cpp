@@ -12,7 +12,7 @@
 #include <span>
 
 #include "ppu/bullet/bullet_vector.h"
-#include "ppu/surfaces/round_edges.h"
+#include "ppu/obstacles/round_edges.h"
 #include "softcell/base/assert.h"
 #include "softcell/soft_bodies/shapes.h"
 

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "ppu/surfaces/obstacle.h"
+#include "ppu/obstacles/obstacle.h"
 
 namespace softcell::ppu {
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <utility>
 
+#include "ppu/attachments/attachment_patch.h"
 #include "ppu/bullet/may_move.h"
-#include "ppu/contacts/attachment_patch.h"
 #include "softcell/base/assert.h"
 
 namespace softcell::ppu {

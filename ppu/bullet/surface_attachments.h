@@ -13,11 +13,11 @@
 #include <span>
 #include <vector>
 
+#include "ppu/attachments/attachment_links.h"
+#include "ppu/attachments/attachments.h"
 #include "ppu/bullet/bullet_obstacles.h"
 #include "ppu/bullet/surface_body.h"
-#include "ppu/contacts/attachment_links.h"
-#include "ppu/contacts/attachments.h"
-#include "ppu/contacts/contact_solver.h"
+#include "ppu/contact_solver/contact_solver.h"
 #include "softcell/soft_bodies/attachment.h"
 
 namespace softcell::ppu {

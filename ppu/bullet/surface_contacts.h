@@ -12,7 +12,7 @@
 #include "ppu/bullet/bullet_obstacles.h"
 #include "ppu/bullet/surface_attachments.h"
 #include "ppu/bullet/surface_body.h"
-#include "ppu/contacts/contact_solver.h"
+#include "ppu/contact_solver/contact_solver.h"
 #include "ppu/contacts/touch_log.h"
 #include "ppu/numbers/disjoint_sets.h"
 #include "ppu/surfaces/cell_finder.h"

@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <optional>
 
-#include "ppu/surfaces/obstacle.h"
+#include "ppu/obstacles/obstacle.h"
 
 namespace softcell::ppu {
 

@@ -8,7 +8,7 @@
 
 #include "contact_solve_job.h"
 #include "ppu/contacts/contact_body.h"
-#include "ppu/surfaces/obstacle.h"
+#include "ppu/obstacles/obstacle.h"
 
 namespace softcell::ppu {
 

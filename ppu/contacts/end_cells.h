@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "ppu/contacts/contact_body.h"
+#include "ppu/obstacles/known_triangles.h"
+#include "ppu/obstacles/side_by_side.h"
+#include "ppu/obstacles/triangle_sheets.h"
 #include "ppu/surfaces/cell_boxes.h"
 #include "ppu/surfaces/cell_finder.h"
-#include "ppu/surfaces/known_triangles.h"
-#include "ppu/surfaces/side_by_side.h"
-#include "ppu/surfaces/triangle_sheets.h"
 
 namespace softcell::ppu {
 

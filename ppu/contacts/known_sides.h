@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "ppu/surfaces/triangle_sheets.h"
+#include "ppu/obstacles/triangle_sheets.h"
 
 namespace softcell::ppu {
 

@@ -7,7 +7,7 @@
 
 #include "ppu/contacts/contact_group.h"
 #include "ppu/contacts/end_cells.h"
-#include "ppu/surfaces/obstacle.h"
+#include "ppu/obstacles/obstacle.h"
 
 namespace softcell::ppu {
 

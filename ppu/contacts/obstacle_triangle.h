@@ -11,8 +11,8 @@
 
 #include "ppu/contacts/arrival.h"
 #include "ppu/contacts/contact_terms.h"
-#include "ppu/surfaces/known_triangles.h"
-#include "ppu/surfaces/obstacle.h"
+#include "ppu/obstacles/known_triangles.h"
+#include "ppu/obstacles/obstacle.h"
 #include "ppu/surfaces/triangle_distance.h"
 #include "softcell/base/assert.h"
 

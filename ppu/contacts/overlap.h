@@ -6,8 +6,8 @@
 #include <span>
 
 #include "ppu/contacts/contact_body.h"
+#include "ppu/obstacles/obstacle.h"
 #include "ppu/surfaces/cell_finder.h"
-#include "ppu/surfaces/obstacle.h"
 
 namespace softcell::ppu {
 

@@ -42,7 +42,10 @@ std::uint32_t part_of(const TriangleMesh& mesh, std::uint32_t triangle) {
 class CellMesh::Maker {
  public:
   explicit Maker(CellMesh& made)
-      : made_(made), mesh_(made.mesh_), lattice_(made.lattice_), position_number_(number_positions(mesh_)) {
+      : made_(made),
+        mesh_(made.mesh_),
+        lattice_(made.lattice_),
+        position_number_(number_positions(mesh_.positions)) {
     low_ = high_ = lattice_.cells.front();
     for (const Vector3i& cell : lattice_.cells) low_ = low_.cwiseMin(cell), high_ = high_.cwiseMax(cell);
     for (const Vector3f& position : mesh_.positions) places_.push_back(place_of(position));

@@ -1,9 +1,16 @@
 #include "softcell/soft_bodies/mesh.h"
 
 #include <Eigen/LU>
+#include <array>
 #include <cmath>
+#include <cstdint>
+#include <span>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
+#include "ppu/mesh/position_numbers.h"
+#include "ppu/mesh/vertex_normals.h"
 #include "ppu/numbers/box_around.h"
 #include "softcell/base/assert.h"
 #include "softcell/base/text.h"
@@ -17,6 +24,16 @@ void require_one_for_each(const char* what, std::size_t count, std::size_t posit
                               std::to_string(count) + " " + what + "; one for each position was expected");
 }
 
+void require_existing(std::size_t triangle, std::uint32_t vertex, std::size_t vertices) {
+  if (vertex < vertices) return;
+  throw std::invalid_argument("triangle " + std::to_string(triangle) + " of a mesh names vertex " +
+                              std::to_string(vertex) + "; the mesh has " + std::to_string(vertices));
+}
+
+std::string text_of(const Eigen::Vector3f& v) {
+  return base::shortest(v.x()) + ", " + base::shortest(v.y()) + ", " + base::shortest(v.z());
+}
+
 }  // namespace
 
 bool MeshTexture::operator==(const MeshTexture& other) const {
@@ -27,6 +44,28 @@ bool MeshTexture::operator==(const MeshTexture& other) const {
 
 bool MeshMaterial::has_looks() const {
   return base_colour || base_texture.picture || normal_texture.picture || !emission.isZero(0);
+}
+
+TriangleMesh make_mesh(std::span<const Eigen::Vector3f> positions,
+                       std::span<const std::array<std::uint32_t, 3>> triangles) {
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    if (!positions[i].allFinite())
+      throw std::runtime_error("position " + std::to_string(i) + " of a mesh is " + text_of(positions[i]) +
+                               "; finite coordinates were expected");
+  }
+  const std::vector<std::uint32_t> numbers = number_positions(positions);
+  std::vector<Eigen::Vector3f> different;
+  for (std::size_t i = 0; i < positions.size(); ++i)
+    if (numbers[i] == different.size()) different.push_back(positions[i]);
+
+  std::vector<std::array<std::uint32_t, 3>> joined;
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    for (const std::uint32_t vertex : triangles[t]) require_existing(t, vertex, positions.size());
+    const auto& [a, b, c] = triangles[t];
+    if (area_vector(positions[a], positions[b], positions[c]).norm() > 0)
+      joined.push_back({numbers[a], numbers[b], numbers[c]});
+  }
+  return with_smooth_normals(different, joined);
 }
 
 Bounds<3> bounds(const TriangleMesh& mesh) {
@@ -72,19 +111,14 @@ void validate(const TriangleMesh& mesh) {
     const Eigen::Vector3f& normal = mesh.normals[i];
     constexpr float kLeast = 1e-20f;  // of a square, whose root and inverse are numbers
     if (normal.squaredNorm() >= kLeast && std::isfinite(normal.squaredNorm())) continue;
-    throw std::invalid_argument("normal " + std::to_string(i) + " of a mesh is " +
-                                base::shortest(normal.x()) + ", " + base::shortest(normal.y()) + ", " +
-                                base::shortest(normal.z()) + "; a unit vector was expected");
+    throw std::invalid_argument("normal " + std::to_string(i) + " of a mesh is " + text_of(normal) +
+                                "; a unit vector was expected");
   }
   if (!mesh.texture_coordinates.empty())
     require_one_for_each("texture coordinates", mesh.texture_coordinates.size(), positions);
   if (!mesh.colours.empty()) require_one_for_each("colours", mesh.colours.size(), positions);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    for (const std::uint32_t vertex : mesh.triangles[t]) {
-      if (vertex < positions) continue;
-      throw std::invalid_argument("triangle " + std::to_string(t) + " of a mesh names vertex " +
-                                  std::to_string(vertex) + "; the mesh has " + std::to_string(positions));
-    }
+    for (const std::uint32_t vertex : mesh.triangles[t]) require_existing(t, vertex, positions);
   }
   std::size_t next = 0;
   for (const MeshPart& part : mesh.parts) {

@@ -27,7 +27,7 @@ Solid::Solid(const TriangleMesh& mesh) {
 /// Closed are parts in which each edge is passed as often in one direction as in the other.
 void Solid::add_closed_parts(const TriangleMesh& mesh) {
   constexpr double kMostOpen = 0.05;  // share of the surface
-  const std::vector<std::uint32_t> number = number_positions(mesh);
+  const std::vector<std::uint32_t> number = number_positions(mesh.positions);
   DisjointSets parts(number.size());
   // Of edges, from the lower corner to the higher.
   std::map<std::pair<std::uint32_t, std::uint32_t>, int> balance;

@@ -6,7 +6,7 @@
 #include <span>
 
 #include "attach_job.h"
-#include "ppu/contacts/attach_unit.h"
+#include "ppu/attachments/attach_unit.h"
 #include "softcell/dma/buffer.h"
 #include "softcell/jobs/job_system.h"
 

@@ -12,7 +12,7 @@
 
 #include "contact_find_job.h"
 #include "contact_solve_job.h"
-#include "ppu/contacts/contact_worker.h"
+#include "ppu/contact_solver/contact_worker.h"
 #include "ppu/spe_bodies/candidate_pairs.h"
 #include "ppu/spe_bodies/find_parts.h"
 #include "ppu/spe_bodies/spe_attachments.h"

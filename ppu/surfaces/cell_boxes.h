@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "ppu/surfaces/four_boxes.h"
+#include "ppu/mesh/four_boxes.h"
 #include "softcell/soft_bodies/lattice.h"
 
 namespace softcell::ppu {

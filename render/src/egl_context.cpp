@@ -2,7 +2,6 @@
 // no use without its library, which is loaded at run time. [EGL 1.5, EGL_MESA_platform_surfaceless]
 // documented
 
-#include <cstdio>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -10,6 +9,7 @@
 #include "backends.h"
 #include "dynamic_library.h"
 #include "softcell/base/assert.h"
+#include "softcell/base/text.h"
 
 namespace softcell::render {
 namespace {
@@ -81,9 +81,8 @@ class EglContext final : public GlContext {
   }
 
   [[noreturn]] void refuse(const char* what) const {
-    char code[16];
-    std::snprintf(code, sizeof code, "0x%X", static_cast<unsigned int>(get_error_()));
-    throw std::runtime_error(std::string("EGL refuses ") + what + " (EGL error " + code + ")");
+    throw std::runtime_error(std::string("EGL refuses ") + what + " (EGL error " +
+                             base::hex(static_cast<unsigned int>(get_error_())) + ")");
   }
 
   DynamicLibrary library_{{"libEGL.so.1"}, "libegl1"};

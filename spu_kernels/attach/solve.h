@@ -1,6 +1,6 @@
 #pragma once
 // Solves one attachment: the impulses that hold particles and places where they should be, and the pushes that bring them back
-// there. ppu/contacts/attachment_rows.h has the equations.
+// there. ppu/attachments/attachment_rows.h has the equations.
 
 #include <spu_intrinsics.h>
 #include <stdint.h>

@@ -14,9 +14,9 @@
 #include <string>
 #include <vector>
 
+#include "grips/hand_patch.h"
 #include "input/recording.h"
 #include "scene_file/scene_library.h"
-#include "simulation/hand_patch.h"
 #include "simulation/simulation_3d.h"
 #include "softcell/soft_bodies/shapes.h"
 #include "softcell/soft_bodies/skinned_mesh.h"

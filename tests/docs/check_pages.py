@@ -51,7 +51,7 @@ def missing_pages(root):
 
 
 def missing_sources(root):
-    """Of pages that name a source by its last folders: `surfaces/obstacle.h`."""
+    """Of pages that name a source by its last folders: `obstacles/obstacle.h`."""
     folders = [root / name for name in ("base", "ci", "demos", "dma", "examples", "ls_sim", "ppu", "render", "spu_kernels", "tests", "tool")]
     known = ["/" + str(file.relative_to(root)) for folder in folders for file in folder.rglob("*.*")]
     for page in pages(root):
@@ -61,7 +61,7 @@ def missing_sources(root):
 
 
 def missing_sources_of_comments(root):
-    """Of comments that name a source by its folders: `surfaces/obstacle.h`. The comments of kernels are left alone, as executables state the hash of these sources."""
+    """Of comments that name a source by its folders: `obstacles/obstacle.h`. The comments of kernels are left alone, as executables state the hash of these sources."""
     of_others = {"GL/osmesa.h"}
     folders = [root / name for name in ("base", "demos", "dma", "examples", "ls_sim", "ppu", "render", "spu_kernels", "tests", "tool")]
     files = [file for folder in folders for file in folder.rglob("*.*")]

@@ -17,7 +17,7 @@ function(expect purpose expected_status expected)
   endif()
 endfunction()
 set(configure ${CMAKE_COMMAND} -S ${project} -B ${build} -G ${GENERATOR} -DSOFTCELL=${SOURCE} -DCMAKE_CXX_COMPILER=${COMPILER}
-  -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-O0 -DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER})
+  -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-O0 -DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER} -DSOFTCELL_UNITY_BUILD=ON)
 
 expect("a component that there is not" 1
   "SOFTCELL_COMPONENTS: softcell has no component 'bodies'; its components are spu, libspe2, soft_bodies, mesh_import, bullet, box2d, spe_bodies, render\\."

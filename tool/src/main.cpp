@@ -57,7 +57,7 @@ class CommandLine {
 
  private:
   Verbs verbs_;
-  CLI::App app_{"Runs Cell/PS3 SPU job kernels on a PC; its main workload is FastLSM soft bodies.",
+  CLI::App app_{"Runs Cell/PS3 SPU kernels on a PC, checks them, and shows soft bodies that they compute.",
                 "softcell"};
   Call chosen_;
 };

@@ -10,8 +10,8 @@
 #include <stdexcept>
 #include <vector>
 
-#include "hand_patch.h"
-#include "held_bodies.h"
+#include "grips/hand_patch.h"
+#include "grips/held_bodies.h"
 #include "input/hands.h"
 #include "scene/beginning.h"
 #include "shown.h"

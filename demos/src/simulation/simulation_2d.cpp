@@ -18,18 +18,19 @@
 #include <fmt/format.h>
 
 #include "beginning_of.h"
+#include "contact_images.h"
 #include "cut_bodies.h"
 #include "describe_refusal.h"
-#include "followed_particle.h"
-#include "held_bodies.h"
+#include "grips/followed_particle.h"
+#include "grips/held_bodies.h"
+#include "grips/rigid_grip_2d.h"
+#include "grips/soft_grip_2d.h"
 #include "input/controls.h"
 #include "input/script_player.h"
 #include "pins.h"
-#include "ppu/spe_bodies/spe_contacts.h"
-#include "rigid_grip_2d.h"
 #include "scene/shared_models.h"
 #include "scene_bodies.h"
-#include "soft_grip_2d.h"
+#include "shown_ropes.h"
 #include "softcell/base/assert.h"
 #include "softcell/box2d/box2d_soft_bodies.h"
 #include "softcell/jobs/job_system.h"
@@ -182,22 +183,17 @@ struct Spes {
         job_loop(options.job_loop()),
         jobs(memory, options.spe_options(), job_loop),
         solver(memory, jobs, {match_2d, &strain}) {
-    if (contacts != ppu::ContactMethod::kSurface) return;
-    contact_find = options.kernel("contact_find");
-    contact_solve = options.kernel("contact_solve");
-    attach_image = options.kernel("attach");
+    if (contacts == ppu::ContactMethod::kSurface) contact_images.emplace(options);
   }
 
   /// The contacts of the bodies are computed where the bodies are stepped.
   std::shared_ptr<ppu::ContactWorker> make_contact_worker() {
-    if (!contact_find) return nullptr;
-    return std::make_shared<ppu::SpeContacts>(
-        memory, jobs, ppu::ContactKernels{*contact_find, *contact_solve, *attach_image});
+    return contact_images ? contact_images->make_worker(memory, jobs) : nullptr;
   }
 
   dma::AddressSpace memory;
   ls_sim::KernelImage match_2d, strain, job_loop;
-  std::optional<ls_sim::KernelImage> contact_find, contact_solve, attach_image;
+  std::optional<ContactImages> contact_images;  // none: the PPU does it
   ppu::JobSystem jobs;
   ppu::SpeSolver<2> solver;
 };
@@ -499,15 +495,8 @@ void Simulation2d::show(Shown2d& shown) const {
   for (std::size_t i = 0; i < state_->scene.rigid_bodies.size(); ++i)
     shown.rigid_poses.push_back(rigid_pose(i));
   shown.ropes.clear();
-  for (std::size_t i = 0; i < state_->scene.attachments.size(); ++i) {
-    const AttachmentPlacement<2>& placement = state_->scene.attachments[i];
-    if (placement.settings.kind != ppu::AttachmentKind::kRope) continue;
-    if (const auto ends = state_->world->soft_bodies.attachment_ends(state_->world->attachments[i]))
-      shown.ropes.push_back({.ends = {ends->patch, ends->other},
-                             .length = ends->length,
-                             .thickness = placement.thickness,
-                             .colour = placement.colour});
-  }
+  append_ropes<2>(state_->scene.attachments, state_->world->attachments, state_->world->soft_bodies,
+                  shown.ropes);
   state_->pins.append(state_->world->soft_bodies, shown.ropes);
   shown.hands.clear();
   for (const Hands<2>::Held& held : held()) {

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <numbers>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -13,32 +12,32 @@
 #include <fmt/format.h>
 
 #include "beginning_of.h"
+#include "contact_images.h"
 #include "cut_bodies.h"
 #include "describe_refusal.h"
-#include "held_bodies.h"
+#include "grips/held_bodies.h"
+#include "grips/rigid_grip.h"
+#include "grips/surface_grip.h"
 #include "input/controls.h"
 #include "input/script_player.h"
 #include "pins.h"
 #include "ppu/bullet/bullet_world.h"
-#include "ppu/numbers/deterministic_math.h"
-#include "ppu/spe_bodies/spe_contacts.h"
-#include "rigid_grip.h"
 #include "scene/shared_models.h"
 #include "scene_bodies.h"
+#include "shown_ropes.h"
 #include "snapshots_3d.h"
 #include "softcell/base/assert.h"
 #include "softcell/bullet/bullet_soft_bodies.h"
 #include "softcell/soft_bodies/fracture.h"
 #include "softcell/soft_bodies/state_hash.h"
 #include "softcell/spe_bodies/spe_solver.h"
-#include "surface_grip.h"
+#include "tilt.h"
 
 namespace softcell::demos {
 namespace {
 
-constexpr double kTiltGrowsFor = 3;  // seconds
-constexpr float kOpaque = 0.5f;      // opacity from which walls hide what is behind them
-constexpr float kReach = 1000;       // metres: beyond any scene
+constexpr float kOpaque = 0.5f;  // opacity from which walls hide what is behind them
+constexpr float kReach = 1000;   // metres: beyond any scene
 
 double milliseconds_since(std::chrono::steady_clock::time_point begin) {
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
@@ -46,27 +45,6 @@ double milliseconds_since(std::chrono::steady_clock::time_point begin) {
 
 double milliseconds(std::chrono::nanoseconds time) {
   return std::chrono::duration<double, std::milli>(time).count();
-}
-
-/// The rotation from the ground's frame to the observer's: first about x, then about z. Radians.
-Eigen::Matrix3f tilted_by(double ax, double az) {
-  const auto sx = static_cast<float>(ppu::sine(ax)), cx = static_cast<float>(ppu::cosine(ax));
-  const auto sz = static_cast<float>(ppu::sine(az)), cz = static_cast<float>(ppu::cosine(az));
-  Eigen::Matrix3f about_x, about_z;
-  about_x << 1, 0, 0, 0, cx, -sx, 0, sx, cx;
-  about_z << cz, -sz, 0, sz, cz, 0, 0, 0, 1;
-  return about_z * about_x;
-}
-
-Eigen::Matrix3f tilt_at(const TiltScript& script, double time) {
-  SC_ASSERT(script.period_x > 0 && script.period_z > 0, "a tilt with periods of {} s and {} s",
-            script.period_x, script.period_z);
-  const double grown = std::clamp((time - double{script.begin}) / kTiltGrowsFor, 0.0, 1.0);
-  const auto angle = [&](float amplitude, float period) {
-    const double phase = 2 * std::numbers::pi * (time - double{script.begin}) / double{period};
-    return grown * double{amplitude} * ppu::sine(phase);
-  };
-  return tilted_by(angle(script.amplitude_x, script.period_x), angle(script.amplitude_z, script.period_z));
 }
 
 /// Makes the body's two ends along x turn against each other about x, with the middle at rest.
@@ -165,11 +143,7 @@ struct Simulation3d::State {
   /// The contacts of the bodies are computed where the bodies are stepped.
   std::shared_ptr<ppu::ContactWorker> make_contact_worker(const SimulationOptions& options) {
     if (on_spes == nullptr || contacts != ppu::ContactMethod::kSurface) return nullptr;
-    contact_find = options.kernel("contact_find");
-    contact_solve = options.kernel("contact_solve");
-    attach_image = options.kernel("attach");
-    return std::make_shared<ppu::SpeContacts>(
-        memory, jobs, ppu::ContactKernels{*contact_find, *contact_solve, *attach_image});
+    return contact_images.emplace(options).make_worker(memory, jobs);
   }
 
   std::unique_ptr<ppu::SoftBodySolver<3>> make_solver(Solver wanted) {
@@ -359,15 +333,7 @@ struct Simulation3d::State {
 
   void copy_ropes(Snapshot3d& snapshot) const {
     snapshot.ropes.clear();
-    for (std::size_t i = 0; i < attachments.size(); ++i) {
-      const AttachmentPlacement<3>& placement = scene.attachments[i];
-      if (placement.settings.kind != ppu::AttachmentKind::kRope) continue;
-      if (const auto ends = soft_bodies.attachment_ends(attachments[i]))
-        snapshot.ropes.push_back({.ends = {ends->patch, ends->other},
-                                  .length = ends->length,
-                                  .thickness = placement.thickness,
-                                  .colour = placement.colour});
-    }
+    append_ropes<3>(scene.attachments, attachments, soft_bodies, snapshot.ropes);
     pins.append(soft_bodies, snapshot.ropes);
   }
 
@@ -455,8 +421,8 @@ struct Simulation3d::State {
   const ls_sim::Timing* timing;  // null: nothing is timed
   dma::AddressSpace memory;
   ls_sim::KernelImage job_loop, match, match_tiles, strain;
-  std::optional<ls_sim::KernelImage> skin;                                       // none: the GPU does it
-  std::optional<ls_sim::KernelImage> contact_find, contact_solve, attach_image;  // none: the PPU does it
+  std::optional<ls_sim::KernelImage> skin;      // none: the GPU does it
+  std::optional<ContactImages> contact_images;  // none: the PPU does it
   ppu::JobSystem jobs;
   const ppu::SpeSolver<3>* on_spes = nullptr;  // null: the PPU steps all bodies
   std::unique_ptr<ppu::SoftBodySolver<3>> solver;

@@ -1,5 +1,5 @@
 #pragma once
-// A queue of words between an SPU and whoever writes to it or reads from it.
+// A queue of words between an SPU and the outside, which writes to it or reads from it.
 
 #include <array>
 #include <cstddef>

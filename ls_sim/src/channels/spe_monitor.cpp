@@ -19,8 +19,8 @@ constexpr std::uint64_t kTurnStream = 0x7475'726E;
 /// A turn lasts up to 2^0 .. 2^5 channel operations, each order of magnitude as often.
 constexpr std::uint32_t kTurnMagnitudes = 6;
 
-/// How long an SPE that is to sleep looks first whether it is woken: the host takes 15 to 50 us to put a thread to sleep and to wake it,
-/// and whoever wakes a thread waits 5 to 15 us for the host.
+/// How long an SPE that has to sleep first polls whether it is woken: the host takes 15 to 50 us to put a thread to sleep and to wake it,
+/// and the thread that wakes it waits 5 to 15 us for the host.
 constexpr std::chrono::microseconds kLookFor{50};
 constexpr int kPausesInLook = 16;  // between looks at the clock
 

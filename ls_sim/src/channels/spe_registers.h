@@ -11,7 +11,7 @@
 
 namespace softcell::ls_sim {
 
-/// Guarded by the SPEs' monitor; whoever changes it wakes who may wait for the change.
+/// Guarded by the SPEs' monitor. A thread that changes it wakes the threads that may wait for the change.
 /// [CBEA, mailboxes, signal notification, SPU events] documented
 struct SpeRegisters {
   Mailbox<4> in_mbox;

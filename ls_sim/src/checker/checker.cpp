@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <bit>
-#include <cstring>
 #include <span>
 #include <utility>
 
 #include "softcell/base/assert.h"
+#include "softcell/base/text.h"
 #include "softcell/dma/mfc.h"
 #include "softcell/ls_sim/local_store.h"
 #include "softcell/ls_sim/trace.h"
@@ -19,16 +19,7 @@ using dma::MfcOpcode;
 using dma::Rule;
 
 constexpr std::uint32_t kEventStatus = 0, kListStallStatus = 25, kListStallAck = 26, kAtomicStatus = 27;
-constexpr std::uint32_t kCallBytes = 5;
 constexpr std::uint32_t kAllTags = 2;  // what MFC_WrTagUpdate waits for
-
-std::string hex(std::uint32_t lsa) {
-  static constexpr char kDigits[] = "0123456789ABCDEF";
-  SC_ASSERT(lsa <= dma::kLocalStoreBytes, "local-store address {}", lsa);
-  std::string text = "0x00000";
-  for (std::size_t i = text.size() - 1; lsa != 0; --i, lsa >>= 4) text[i] = kDigits[lsa & 15];
-  return text;
-}
 
 std::string name_of(const dma::MfcCommand& command) { return std::string(dma::name(command.opcode())); }
 
@@ -43,7 +34,7 @@ void Checker::begin_run(const KernelImage& image, const StackRange& stack, bool 
   SC_ASSERT(stack.begin <= stack.end && stack.end <= dma::kLocalStoreBytes, "the stack of {} is {} to {}",
             image.name, stack.begin, stack.end);
   image_ = &image;
-  debug_information_ = &debug_information_of(image);
+  places_.begin_run(image, stack);
   objects_.emplace(image, stack);
   last_store_.reset();
   if (forgets) heap_.clear();
@@ -57,7 +48,7 @@ void Checker::begin_run(const KernelImage& image, const StackRange& stack, bool 
   if (runs_spu_program() && image.stack_top == dma::kLocalStoreBytes)
     written_.mark(dma::kLocalStoreBytes - dma::kQuadwordBytes, dma::kQuadwordBytes);
   stack_overflow_known_ = false;
-  for (const PaddingRange& gap : debug_information_->padding) written_.mark(gap.lsa, gap.bytes);
+  for (const PaddingRange& gap : places_.padding()) written_.mark(gap.lsa, gap.bytes);
   in_flight_.clear();
   tag_mask_ = tags_issued_ = 0;
   idle_waits_.clear();
@@ -69,16 +60,6 @@ void Checker::begin_run(const KernelImage& image, const StackRange& stack, bool 
   check_fetched_code();
 }
 
-const Checker::DebugInformation& Checker::debug_information_of(const KernelImage& image) {
-  // A program may load images without end.
-  constexpr std::size_t kMostKnown = 64;
-  const void* const file = image.elf.get();
-  if (known_files_.size() == kMostKnown && !known_files_.contains(file)) known_files_.clear();
-  std::unique_ptr<DebugInformation>& known = known_files_[file];
-  if (known == nullptr) known = std::make_unique<DebugInformation>(image);
-  return *known;
-}
-
 // ---- instructions
 
 void Checker::check_code(Address instruction) {
@@ -88,10 +69,10 @@ void Checker::check_code(Address instruction) {
   const bool by_this_kernel = writer != UnsyncedBytes::kOutside;
   report(Rule::kCodeWithoutSync, by_this_kernel ? Address{writer} : instruction,
          std::string(by_this_kernel ? "this kernel" : "another SPE or the PPU") +
-             " wrote the instruction at " + objects_->describe(lsa) + " (LSA " + hex(lsa) + ")" +
+             " wrote the instruction at " + objects_->describe(lsa) + " (LSA " + base::hex(lsa, 5) + ")" +
              (by_this_kernel ? "" : ", and this kernel") +
              (by_this_kernel ? " and executed it" : " executed it") + " without a sync in between");
-  unsynced_.clear();  // said once
+  unsynced_.clear();  // report it once
 }
 
 /// Whoever writes to the image's own code has a finding for that, but for programs for the SPU, which may.
@@ -118,14 +99,14 @@ void Checker::mark_changed_words() {
   last_store_.reset();
 }
 
-/// Checks the code of a job's image, which whoever calls the job has fetched.
+/// Checks the code of a job's image, which the caller of the job has fetched.
 void Checker::check_fetched_code() {
   SC_ASSERT(image_->begin <= image_->data_begin && image_->data_begin <= dma::kLocalStoreBytes,
             "code of {} from {} to {}", image_->name, image_->begin, image_->data_begin);
   const std::uint32_t lsa = unsynced_.first_in(image_->begin, image_->data_begin);
   if (lsa == image_->data_begin) return;
   report(Rule::kCodeWithoutSync, Address{image_->entry},
-         "the calling kernel fetched these instructions, from LSA " + hex(lsa) +
+         "the calling kernel fetched these instructions, from LSA " + base::hex(lsa, 5) +
              " on, and did not execute a sync before the call");
   unsynced_.clear();
 }
@@ -144,18 +125,18 @@ void Checker::on_instruction(const ExecutedInstruction& instruction) {
   mark_changed_words();
   const bool is_code = lsa >= image_->text_begin && lsa < image_->text_end;
   if (!is_code && !is_written(lsa, 4)) {
-    report(
-        Rule::kJumpOutsideCode, instruction.address,
-        "it executes LSA " + hex(lsa) + ", which is no code of the program, nor has the program written it");
-    written_.mark(lsa, 4);  // said once
+    report(Rule::kJumpOutsideCode, instruction.address,
+           "it executes LSA " + base::hex(lsa, 5) +
+               ", which is no code of the program, nor has the program written it");
+    written_.mark(lsa, 4);  // report it once
   }
   check_code(instruction.address);
   if (instruction.undefined) report_undefined(instruction);
   if (instruction.stack_pointer.value >= image_->sizes.end || stack_overflow_known_) return;
   stack_overflow_known_ = true;  // all that follows does the same
   report(Rule::kStackOverflow, instruction.address,
-         "the stack pointer is " + hex(instruction.stack_pointer.value) +
-             ", and the program's variables end at " + hex(image_->sizes.end));
+         "the stack pointer is " + base::hex(instruction.stack_pointer.value, 5) +
+             ", and the program's variables end at " + base::hex(image_->sizes.end, 5));
 }
 
 void Checker::report_undefined(const ExecutedInstruction& instruction) {
@@ -164,16 +145,16 @@ void Checker::report_undefined(const ExecutedInstruction& instruction) {
                                           "where this branch goes", "whether this stops the SPU",
                                           "what is written to this channel"};
   std::string what = std::string(kUses[static_cast<std::size_t>(use.kind)]) + " depends on register $" +
-                     std::to_string(use.reg) + " (LSA " + hex(instruction.address.value) + ")";
+                     std::to_string(use.reg) + " (LSA " + base::hex(instruction.address.value, 5) + ")";
   if (!use.from) {
     what += ", which the program has never written";
   } else {
-    const std::string place = place_of(use.from->instruction);
+    const std::string place = places_.of(use.from->instruction);
     // Of a program with a heap nobody knows where the stack begins.
     const bool is_free = image_->main == 0 && use.from->lsa.value >= image_->sizes.end;
     what += ", on bytes " + (is_free ? "of heap or stack" : "at " + objects_->describe(use.from->lsa.value)) +
-            " (LSA " + hex(use.from->lsa.value) + ") that nobody has written; they were loaded at " +
-            (place.empty() ? "" : place + ", ") + "LSA " + hex(use.from->instruction.value);
+            " (LSA " + base::hex(use.from->lsa.value, 5) + ") that nobody has written; they were loaded at " +
+            (place.empty() ? "" : place + ", ") + "LSA " + base::hex(use.from->instruction.value, 5);
   }
   const bool is_address = use.kind == UndefinedUse::Kind::kAddress;
   report(is_address ? Rule::kUninitialisedAddress : Rule::kUninitialisedValue, instruction.address,
@@ -230,7 +211,9 @@ void Checker::on_heap_block(const Access& block, bool is_freed) {
   stack_pointer_ = block.stack_pointer.value;
   if (!is_freed) return heap_.add(block.lsa.value, block.bytes);
   const std::uint32_t lsa = block.lsa.value, bytes = heap_.bytes_at(lsa);
-  const auto freed = [&] { return "free of " + objects_->describe(lsa) + " (LSA " + hex(lsa) + ")"; };
+  const auto freed = [&] {
+    return "free of " + objects_->describe(lsa) + " (LSA " + base::hex(lsa, 5) + ")";
+  };
   const std::string mistake = heap_.end(lsa);
   if (!mistake.empty()) return report(Rule::kOutsideObjects, block.instruction, freed() + ": " + mistake);
   const CommandInFlight* other = in_flight_.writing(lsa, bytes);
@@ -359,7 +342,7 @@ bool Checker::is_in_unread_line(const Access& access) const {
 }
 
 std::string Checker::describe(const LineCommand& line) const {
-  return name_of(line.command) + ", issued at " + place_of(line.issued_at) + ", whose status was not read";
+  return name_of(line.command) + ", issued at " + places_.of(line.issued_at) + ", whose status was not read";
 }
 
 void Checker::check_load(const Access& access) {
@@ -464,7 +447,7 @@ void Checker::check_line_command(const CommandInFlight& line) {
   if (status_unread_) {
     report(Rule::kAtomicStatusNotRead, here,
            "the status of the " + name_of(status_unread_->command) + " before it, issued at " +
-               place_of(status_unread_->issued_at) + ", was not read",
+               places_.of(status_unread_->issued_at) + ", was not read",
            command);
   }
   status_unread_ = LineCommand{command, here};
@@ -481,7 +464,7 @@ void Checker::end_reservation(const dma::MfcCommand& by) {
       reservation_ && by.opcode() != MfcOpcode::getllar && same_line(reservation_->command.ea, by.ea);
   if (reservation_ && !stores_it && reservation_->line_changed && by.opcode() == MfcOpcode::getllar) {
     report(Rule::kReservationNotUsed, reservation_->issued_at,
-           "the line was changed, and the next getllar is at " + place_of(to_.engine.position()),
+           "the line was changed, and the next getllar is at " + places_.of(to_.engine.position()),
            reservation_->command);
   }
   if (by.opcode() == MfcOpcode::getllar) {
@@ -637,66 +620,13 @@ void Checker::end_run() {
 
 // ---- words
 
-/// For a place in the C library, returns the line of the program that has called it, and the function that it has called:
-/// "lab.c:30 (strlen)".
-std::string Checker::place_in_program(Address instruction) const {
-  constexpr int kDeepest = 8;  // calls in the library
-  CallFrame frame{instruction, stack_pointer_};
-  for (int calls = 0; calls < kDeepest && debug_information_->lines.is_in_library(frame.instruction);
-       ++calls) {
-    const ImageObject* const function = function_of(*image_, frame.instruction);
-    const auto caller = function == nullptr ? std::nullopt : caller_of(*function, frame.stack_pointer);
-    if (!caller) break;
-    if (!debug_information_->lines.is_in_library(caller->instruction))
-      return place_of(caller->instruction) + " (" + caller->called->name + ")";
-    frame = *caller;
-  }
-  return place_of(instruction);
-}
-
-/// The place that an instruction of 5 bytes goes to, a call or a jump by 32 bits. [AMD64 manual, volume 3] documented
-std::optional<std::uint32_t> Checker::target_of(std::uint32_t instruction, std::byte opcode) const {
-  if (to_.local_store[instruction] != opcode) return std::nullopt;
-  std::int32_t distance = 0;
-  std::memcpy(&distance, &to_.local_store[instruction + 1], sizeof distance);
-  return instruction + kCallBytes + static_cast<std::uint32_t>(distance);
-}
-
-/// Who has called this function: the first return address on the stack behind a call of it, or of a function that ends by a jump to it.
-/// Nothing for one that was called by a pointer.
-std::optional<Checker::CallFrame> Checker::caller_of(const ImageObject& function,
-                                                     std::uint32_t stack_pointer) const {
-  constexpr std::uint32_t kSlotBytes = 8;
-  constexpr std::byte kCall{0xE8}, kJump{0xE9};
-  const auto jumps_to_it = [&](const ImageObject& other) {
-    for (std::uint32_t at = other.begin.value; at + kCallBytes <= other.begin.value + other.bytes; ++at)
-      if (target_of(at, kJump) == function.begin.value) return true;
-    return false;
-  };
-  const auto base = reinterpret_cast<std::uintptr_t>(to_.local_store.data());
-  for (std::uint32_t slot = (stack_pointer + kSlotBytes - 1) / kSlotBytes * kSlotBytes;
-       objects_->in_stack(slot); slot += kSlotBytes) {
-    std::uint64_t behind = 0;
-    std::memcpy(&behind, &to_.local_store[slot], sizeof behind);
-    behind -= base;
-    if (behind < image_->text_begin + kCallBytes || behind > image_->text_end) continue;
-    const auto call = static_cast<std::uint32_t>(behind) - kCallBytes;
-    const auto target = target_of(call, kCall);
-    const ImageObject* const called = target ? function_of(*image_, {*target}) : nullptr;
-    if (called == nullptr || called->begin.value != *target) continue;
-    if (called->begin.value != function.begin.value && !jumps_to_it(*called)) continue;
-    return CallFrame{{call}, slot + kSlotBytes, called};
-  }
-  return std::nullopt;
-}
-
 void Checker::report(Rule rule, Address place, std::string detail,
                      const std::optional<dma::MfcCommand>& command) {
   SC_ASSERT(image_ != nullptr, "rule {} broken before a run: {}", dma::name(rule), detail);
   const dma::Fault finding{.rule = rule,
                            .spe = to_.spe,
                            .kernel = image_->name,
-                           .place = place_in_program(place),
+                           .place = places_.in_program(place, stack_pointer_),
                            .command = command,
                            .detail = std::move(detail)};
   to_.findings.add(finding);
@@ -706,14 +636,14 @@ void Checker::report(Rule rule, Address place, std::string detail,
 std::string Checker::describe(const Access& access) const {
   return std::string(access.is_store ? "store" : "load") + " of " + std::to_string(access.bytes) +
          (access.bytes == 1 ? " byte at " : " bytes at ") + objects_->describe(access.lsa.value) + " (LSA " +
-         hex(access.lsa.value) + ")";
+         base::hex(access.lsa.value, 5) + ")";
 }
 
 std::string Checker::describe(const CommandInFlight& other) const {
   std::uint64_t bytes = 0;
   for (const MovedRange& range : other.ranges) bytes += range.bytes;
   return name_of(other.command) + " of " + std::to_string(bytes) + " bytes, tag " +
-         std::to_string(other.command.tag) + ", issued at " + place_of(other.issued_at);
+         std::to_string(other.command.tag) + ", issued at " + places_.of(other.issued_at);
 }
 
 }  // namespace softcell::ls_sim

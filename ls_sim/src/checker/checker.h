@@ -11,24 +11,20 @@
 #include <atomic>
 #include <cstddef>
 #include <map>
-#include <memory>
 #include <optional>
 #include <span>
 #include <string>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
 #include "commands_in_flight.h"
 #include "heap_blocks.h"
-#include "image/function_names.h"
 #include "image/object_map.h"
-#include "image/object_padding.h"
+#include "program_places.h"
 #include "softcell/base/assert.h"
 #include "softcell/ls_sim/channels.h"
 #include "softcell/ls_sim/engine.h"
 #include "softcell/ls_sim/findings.h"
-#include "softcell/ls_sim/source_lines.h"
 #include "unsynced_bytes.h"
 #include "written_bytes.h"
 
@@ -53,7 +49,7 @@ class Checker final : public ChannelPort, public AccessObserver {
     SpeTrace* trace = nullptr;  ///< told of each occurrence; null: nobody
   };
 
-  explicit Checker(const Surroundings& surroundings) : to_(surroundings) {
+  explicit Checker(const Surroundings& surroundings) : to_(surroundings), places_(surroundings.local_store) {
     SC_ASSERT(to_.local_store.size() == dma::kLocalStoreBytes, "SPE {} has a local store of {} bytes",
               to_.spe, to_.local_store.size());
   }
@@ -120,21 +116,6 @@ class Checker final : public ChannelPort, public AccessObserver {
     std::string put_detail = {};  ///< of the finding if such a byte changes
   };
 
-  /// Where a function of the program is, and its stack pointer there.
-  struct CallFrame {
-    Address instruction;
-    std::uint32_t stack_pointer = 0;
-    const ImageObject* called = nullptr;  ///< what it calls there
-  };
-
-  /// What an image's file says of its sources and variables.
-  struct DebugInformation {
-    explicit DebugInformation(const KernelImage& image) : lines(image), padding(padding_of(image)) {}
-    SourceLines lines;
-    std::vector<PaddingRange> padding;
-  };
-  const DebugInformation& debug_information_of(const KernelImage& image);
-
   void check_code(Address instruction);
   void mark_changed_words();
   void check_fetched_code();
@@ -165,24 +146,14 @@ class Checker final : public ChannelPort, public AccessObserver {
               const std::optional<dma::MfcCommand>& command = std::nullopt);
   bool check_load_in_flight(const Access& access);
   bool is_in_unread_line(const Access& access) const;
-  std::string place_in_program(Address instruction) const;
-  std::optional<std::uint32_t> target_of(std::uint32_t instruction, std::byte opcode) const;
-  std::optional<CallFrame> caller_of(const ImageObject& function, std::uint32_t stack_pointer) const;
   std::string describe(const Access& access) const;
   std::string describe(const CommandInFlight& command) const;
   std::string describe(const LineCommand& line) const;
   bool runs_spu_program() const { return image_ != nullptr && image_->machine == Machine::kSpu; }
-  /// Without debug information, the function.
-  std::string place_of(Address instruction) const {
-    const std::string place = debug_information_->lines.place_of(instruction);
-    return place.empty() ? function_at(*image_, instruction) : place;
-  }
 
   Surroundings to_;
   const KernelImage* image_ = nullptr;
-  /// Debug information by the image's file, which its lines keep: a job loop changes between images all the time.
-  std::unordered_map<const void*, std::unique_ptr<DebugInformation>> known_files_;
-  const DebugInformation* debug_information_ = nullptr;  ///< of image_
+  ProgramPlaces places_;
   std::optional<ObjectMap> objects_;
 
   WrittenBytes written_;

@@ -1,5 +1,5 @@
 #pragma once
-// The blocks of a program's heap, as its C library tells of them.
+// The blocks of a program's heap, as its C library reports them.
 
 #include <cstdint>
 #include <iterator>

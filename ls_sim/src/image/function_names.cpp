@@ -3,11 +3,10 @@
 #include <cxxabi.h>
 
 #include <algorithm>
-#include <array>
-#include <cstdio>
 #include <cstdlib>
 
 #include "softcell/base/assert.h"
+#include "softcell/base/text.h"
 
 namespace softcell::ls_sim {
 
@@ -37,9 +36,7 @@ std::string function_at(const KernelImage& image, dma::LocalStoreAddress address
   if (function == nullptr) return {};
   const std::uint32_t offset = address.value - function->begin.value;
   if (offset == 0) return function->name;
-  std::array<char, 16> text{};
-  std::snprintf(text.data(), text.size(), " + 0x%X", offset);
-  return function->name + text.data();
+  return function->name + " + " + base::hex(offset);
 }
 
 }  // namespace softcell::ls_sim

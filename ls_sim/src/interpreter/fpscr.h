@@ -35,7 +35,7 @@ struct Fpscr {
 };
 
 /// The host's MXCSR while SPU instructions execute: truncates, flushes results, raises nothing.
-/// Denormal operands are not flushed, so that its sticky flag tells of them.
+/// Denormal operands are not flushed, so that the host sets its sticky flag for them.
 inline constexpr std::uint32_t kSpuMxcsr = 0x1F80 | 0x6000 | 0x8000;
 inline constexpr std::uint32_t kMxcsrInvalid = 1, kMxcsrDenormal = 2, kMxcsrOverflow = 8,
                                kMxcsrUnderflow = 16, kMxcsrInexact = 32;

@@ -1,7 +1,5 @@
 #include <algorithm>
-#include <array>
 #include <atomic>
-#include <cstdio>
 #include <cstring>
 #include <memory>
 #include <optional>
@@ -19,6 +17,7 @@
 #include "pipeline.h"
 #include "run_loop.h"
 #include "softcell/base/assert.h"
+#include "softcell/base/text.h"
 #include "softcell/dma/local_store_bytes.h"
 #include "softcell/ls_sim/engine.h"
 #include "softcell/ls_sim/local_store.h"
@@ -32,12 +31,6 @@ using namespace interpreter;
 constexpr std::uint32_t kStackTop = 0x3FFF0;  // [libspe2, lv2] second-hand
 constexpr int kStackRegister = CheckedObserver::kStackRegister,
               kFirstArgument = CheckedObserver::kFirstArgument;
-
-std::string hexadecimal(std::uint32_t value) {
-  std::array<char, 16> text{};
-  std::snprintf(text.data(), text.size(), "0x%05X", value);
-  return text.data();
-}
 
 /// A 64-bit argument as main() finds it.
 Quadword in_first_doubleword(std::uint64_t value) {
@@ -282,14 +275,13 @@ dma::Fault InterpreterEngine::fault_of(const Core& core, ChannelAccess& access, 
             static_cast<int>(core.ending));
   std::uint32_t bytes = 0;
   std::memcpy(&bytes, local_store_.base() + core.last_pc, sizeof bytes);
-  std::array<char, 16> word{};
-  std::snprintf(word.data(), word.size(), "0x%08X", __builtin_bswap32(bytes));
-  return fault(dma::Rule::kIllegalInstruction, where + " is " + word.data() + ", which is none of the SPU's");
+  return fault(dma::Rule::kIllegalInstruction,
+               where + " is " + base::hex(__builtin_bswap32(bytes), 8) + ", which is none of the SPU's");
 }
 
 std::string InterpreterEngine::describe(std::uint32_t address) const {
   const std::string function = function_at(*image_, {address});
-  return hexadecimal(address) + (function.empty() ? "" : ", " + function);
+  return base::hex(address, 5) + (function.empty() ? "" : ", " + function);
 }
 
 /// "0x00120  main + 0x20  ai $3,$4,-1  saxpy.cpp:41"
@@ -299,7 +291,7 @@ std::vector<std::string> InterpreterEngine::last_instructions() const {
   for (const std::uint32_t address : trail_.last(state_.pc)) {
     std::uint32_t bytes = 0;
     std::memcpy(&bytes, local_store_.base() + address, sizeof bytes);
-    std::string text = hexadecimal(address);
+    std::string text = base::hex(address, 5);
     for (const std::string& part :
          {function_at(*image_, {address}), disassemble(decode(__builtin_bswap32(bytes)), address),
           lines.place_of({address})}) {

@@ -1,14 +1,13 @@
 #include "job_calls.h"
 
 #include <algorithm>
-#include <array>
-#include <cstdio>
 #include <cstring>
 #include <span>
 #include <string>
 #include <utility>
 
 #include "softcell/base/assert.h"
+#include "softcell/base/text.h"
 #include "softcell/dma/local_store_bytes.h"
 
 namespace softcell::ls_sim::interpreter {
@@ -23,12 +22,6 @@ std::uint64_t doubleword(const std::byte* bytes) {
   std::uint64_t value = 0;
   std::memcpy(&value, bytes, sizeof value);
   return __builtin_bswap64(value);
-}
-
-std::string hexadecimal(std::size_t value) {
-  std::array<char, 20> text{};
-  std::snprintf(text.data(), text.size(), "0x%05zX", value);
-  return text.data();
 }
 
 }  // namespace
@@ -119,7 +112,7 @@ std::optional<std::string> JobCalls::changed_part() const {
     const auto [now, before] = std::ranges::mismatch(part.now, part.before);
     if (now == part.now.end()) continue;
     return "the job wrote to local-store address " +
-           hexadecimal(static_cast<std::size_t>(std::to_address(now) - local_store_.base())) +
+           base::hex(static_cast<std::size_t>(std::to_address(now) - local_store_.base()), 5) +
            ", where kernel " + caller_.name + ", which has called it, has its " + part.name;
   }
   return std::nullopt;

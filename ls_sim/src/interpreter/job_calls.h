@@ -65,7 +65,7 @@ class JobCalls {
   std::optional<dma::Fault> fault_;
 };
 
-/// Tells an observer of instructions what it is told, and of jobs where they begin and end.
+/// Passes everything on to an observer of instructions, and watches where jobs begin and end.
 template <class Observer>
 class WithJobs {
  public:

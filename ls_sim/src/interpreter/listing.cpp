@@ -1,8 +1,6 @@
 // Programs as text, with their static schedule.
 
 #include <algorithm>
-#include <array>
-#include <cstdio>
 #include <string>
 #include <vector>
 
@@ -10,6 +8,7 @@
 #include "image/function_names.h"
 #include "pipeline.h"
 #include "softcell/base/assert.h"
+#include "softcell/base/text.h"
 #include "softcell/ls_sim/engine.h"
 #include "softcell/ls_sim/spu_listing.h"
 
@@ -20,12 +19,6 @@ using namespace interpreter;
 
 constexpr std::uint32_t kWordBytes = 4;
 constexpr std::size_t kColumns = 50;
-
-std::string hexadecimal(std::uint32_t value) {
-  std::array<char, 16> text{};
-  std::snprintf(text.data(), text.size(), "0x%X", value);
-  return text.data();
-}
 
 std::uint32_t word_at(const KernelImage& image, std::uint32_t address) {
   std::uint32_t word = 0;
@@ -50,9 +43,9 @@ std::string hint_note(const KernelImage& image, const Operation& op, std::uint32
   const std::uint32_t branch =
       (address + (static_cast<std::uint32_t>(hint_distance(op)) << 2)) & kInstructionMask;
   if (branch < image.begin || branch - image.begin + kWordBytes > image.bytes.size())
-    return "for " + hexadecimal(branch);
+    return "for " + base::hex(branch);
   const Operation hinted = decode(word_at(image, branch));
-  return "for " + hexadecimal(branch) + ", " + disassemble(hinted, branch);
+  return "for " + base::hex(branch) + ", " + disassemble(hinted, branch);
 }
 
 std::string note_of(const KernelImage& image, const Operation& op, std::uint32_t address) {

@@ -10,9 +10,9 @@
 
 namespace softcell::ls_sim::interpreter {
 
-/// The words of a local store as operations. A word is decoded again when the local store holds another at its
-/// place: whoever has written it, the loop compares before it executes. So there is nothing to be told of stores
-/// and transfers.
+/// The words of a local store as decoded operations. Before the loop executes one, it compares the word with the
+/// local store and decodes it again if they differ, whoever has written it. So nobody has to report stores and
+/// transfers.
 class DecodedStore {
  public:
   DecodedStore() : operations_(dma::kLocalStoreBytes / 4, decode(0)) {}

@@ -182,7 +182,7 @@ std::optional<UndefinedUse> UndefinedValues::on_instruction(const Operation& op,
     return {};
   }
   const std::optional<UndefinedUse> found = use(op, info, state);
-  if (found) undefined_[static_cast<std::size_t>(found->reg)] = Quadword{};  // said once
+  if (found) undefined_[static_cast<std::size_t>(found->reg)] = Quadword{};  // report it once
   if (info.writes_target && info.kind != Kind::kLoad) undefined_[op.rt] = Quadword{};
   return found;
 }

@@ -33,7 +33,7 @@ struct Environment {
 };
 static_assert(sizeof(Environment) == 128);
 
-/// What the kernel asks of the worker; kFault is said by land() and never by a kernel.
+/// What the kernel asks of the worker. Only land() sets kFault, never a kernel.
 enum class Operation : std::uint32_t {
   kRead = 0,
   kWrite = 1,
@@ -48,7 +48,7 @@ enum class Operation : std::uint32_t {
   kFault = 0xFF'FFFF
 };
 
-/// What Operation::kAccess tells of, as spu_kernels/sdk/checked/report.h numbers it.
+/// What Operation::kAccess reports, by the numbers of spu_kernels/sdk/checked/report.h.
 enum class Told : std::uint32_t { kLoad = 0, kStore = 1, kHeapBlock = 2, kFreedBlock = 3 };
 
 constexpr std::uint32_t request_of(Operation operation, std::uint32_t channel = 0) {
@@ -106,11 +106,11 @@ struct KernelContext {
   volatile std::sig_atomic_t landing = 0;
   volatile std::sig_atomic_t stepping = 0;  ///< the instruction that failed is being executed once more
   bool repeat_what_failed = true;           ///< false under a debugger, which steps through kernels itself
-  Debugger* stepper = nullptr;              ///< is told of each instruction; null: nobody
+  Debugger* stepper = nullptr;              ///< sees each instruction; null: nobody does
   int spe = 0;
 };
 
-/// If somebody is told of each instruction: from now on each one of this thread is followed by a SIGTRAP, or none is.
+/// With a stepper: from now on a SIGTRAP follows each instruction of this thread, or, if not `on`, none.
 /// [AMD64 manual, volume 2, single-step trap] documented
 inline void step(const KernelContext& context, bool on) {
   if (context.stepper == nullptr) return;

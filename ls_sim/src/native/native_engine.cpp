@@ -1,9 +1,7 @@
 #include <pthread.h>
 
 #include <algorithm>
-#include <array>
 #include <atomic>
-#include <cstdio>
 #include <cstring>
 #include <exception>
 #include <memory>
@@ -48,12 +46,6 @@ constexpr std::uint32_t kCanaryBytes = 256;  // watched below the declared stack
 // Of the gate's frame: its caller's frame pointer and return address.
 constexpr std::uint32_t kGateLinkBytes = 16;
 constexpr std::size_t kLandingStackBytes = 16 * 1024;
-
-std::string hexadecimal(std::uint64_t value) {
-  std::array<char, 24> text{};
-  std::snprintf(text.data(), text.size(), "0x%05llX", static_cast<unsigned long long>(value));
-  return text.data();
-}
 
 constexpr std::uint32_t number(Channel channel) { return static_cast<std::uint32_t>(channel); }
 
@@ -368,7 +360,7 @@ std::optional<RunResult> NativeEngine::answer() {
   }
   ChannelReply reply = answer_channel();
   if (reply.fault) {
-    // A caller whose code the job has damaged may do anything before it tells of the job's end.
+    // A caller whose code the job has damaged may do anything before it reports the job's end.
     if (job_under_way_)
       if (auto damage = check_caller()) return RunResult{0, std::move(damage)};
     return RunResult{0, std::move(*reply.fault)};
@@ -415,7 +407,7 @@ std::optional<dma::Fault> NativeEngine::mark_job() {
   job_image_ = jobs_->on_job_begin({environment.job_image_ea}, {environment.job_ea});
   // One that is not known may end anywhere below its caller's stack.
   last_job_end_ = job_image_ != nullptr ? job_image_->sizes.end : stack_limit();
-  tag_mask_ = ~environment.mfc_tag_mask;  // whoever follows the job is to see the mask that it begins with
+  tag_mask_ = ~environment.mfc_tag_mask;  // so that the channels get the mask with which the job begins
   const std::span<const std::byte> variables = variables_of_caller();
   SC_ASSERT(variables.size() <= dma::kLocalStoreBytes, "{} has {} bytes of variables", image_->name,
             variables.size());
@@ -452,7 +444,7 @@ std::span<const std::byte> NativeEngine::variables_of_caller() const {
   return {local_store_.base() + image_->data_begin, image_->sizes.end - image_->data_begin};
 }
 
-/// The caller's frames from where it tells of a job. It writes nothing there before it tells of the job's
+/// The caller's frames from where it reports a job. It writes nothing there before it reports the job's
 /// end; where the gate returns to, which is another place each time, lies below.
 std::span<const std::byte> NativeEngine::frames_of_caller() const {
   const std::uint32_t top = image_->stack_top;
@@ -480,7 +472,7 @@ std::optional<dma::Fault> NativeEngine::check_caller() const {
     const std::byte* const at = std::to_address(std::ranges::mismatch(part.now, part.before).in1);
     return fault(dma::Rule::kOutsideObjects,
                  "the job wrote to local-store address " +
-                     hexadecimal(static_cast<std::uint64_t>(at - local_store_.base())) + ", where kernel " +
+                     base::hex(static_cast<std::uint64_t>(at - local_store_.base()), 5) + ", where kernel " +
                      image_->name + ", which has called it, has its " + part.name);
   }
   return std::nullopt;
@@ -546,14 +538,14 @@ dma::Fault NativeEngine::stack_overflow(std::string detail) const {
 std::optional<dma::Fault> NativeEngine::check_stack() const {
   const auto pointer = context_.stack_pointer - arena();
   if (pointer < stack_limit())
-    return stack_overflow("the stack pointer is at local-store address " + hexadecimal(pointer));
+    return stack_overflow("the stack pointer is at local-store address " + base::hex(pointer, 5));
   if (context_.operation() == Operation::kStop && written_below_stack()) {
     return stack_overflow("bytes below the stack were written");
   }
   return std::nullopt;
 }
 
-/// Bytes below the stack of whoever runs, which nobody writes while it does.
+/// Bytes below the stack of the kernel or job that runs, which it must not write.
 std::span<std::byte> NativeEngine::canary() const {
   const std::uint32_t end = stack_limit();
   SC_ASSERT(end <= dma::kLocalStoreBytes, "the stack of {} is limited at {}", image_->name, end);
@@ -577,7 +569,7 @@ std::string NativeEngine::describe_damaged_code() const {
   const std::byte* const damaged = std::mismatch(code, end, linked.begin()).first;
   if (damaged == end) return {};
   return "; the kernel's instructions or constants have been overwritten, from local-store address " +
-         hexadecimal(static_cast<std::uint64_t>(damaged - local_store_.base())) + " on";
+         base::hex(static_cast<std::uint64_t>(damaged - local_store_.base()), 5) + " on";
 }
 
 dma::Fault NativeEngine::cause_of_trap() const {
@@ -585,7 +577,7 @@ dma::Fault NativeEngine::cause_of_trap() const {
   const std::uintptr_t at = trap.instruction - arena();
   if (trap.stale) {
     return fault(dma::Rule::kStaleInstructions,
-                 "the instruction at local-store address " + hexadecimal(at) +
+                 "the instruction at local-store address " + base::hex(at, 5) +
                      " failed, and did not fail when it was executed once more: the processor ran stale "
                      "instructions, not those that the local store holds");
   }
@@ -594,12 +586,12 @@ dma::Fault NativeEngine::cause_of_trap() const {
   }
   const auto call = call_of_what_is_no_code();
   const std::string where = at < dma::kLocalStoreBytes
-                                ? "the instruction at local-store address " + hexadecimal(at)
-                            : call ? "the call at local-store address " + hexadecimal(*call)
+                                ? "the instruction at local-store address " + base::hex(at, 5)
+                            : call ? "the call at local-store address " + base::hex(*call, 5)
                                    : "an instruction outside the local store";
   if (trap.signal == native::kInterruptSignal) {
     return fault(dma::Rule::kDeadlineExceeded,
-                 "the kernel did not end in time; it was at local-store address " + hexadecimal(at));
+                 "the kernel did not end in time; it was at local-store address " + base::hex(at, 5));
   }
   const std::uintptr_t stack = trap.stack - (arena() - LocalStore::kGuardBytes);
   if (stack < LocalStore::kGuardBytes + stack_limit()) {
@@ -629,7 +621,7 @@ dma::Fault NativeEngine::memory_fault(const std::string& where) const {
                              : trap.write           ? " wrote to "
                                                     : " read from ";
   if (trap.address == 0) {
-    return fault(dma::Rule::kOutsideLocalStore, where + access + "address " + hexadecimal(0) +
+    return fault(dma::Rule::kOutsideLocalStore, where + access + "address " + base::hex(0, 5) +
                                                     ", by a null pointer" +
                                                     (trap.instruction_fetch ? " to a function" : ""));
   }
@@ -646,12 +638,12 @@ dma::Fault NativeEngine::memory_fault(const std::string& where) const {
   // After the addresses around the local store, which may be low words of addresses in a large main memory.
   if (dma::is_low_word_of_effective_address(trap.address, main_memory_bytes_)) {
     return fault(dma::Rule::kEffectiveAddressAsPointer,
-                 where + access + "address " + hexadecimal(trap.address) +
+                 where + access + "address " + base::hex(trap.address, 5) +
                      ", the low 32 bits of an effective address; main storage is reached by DMA only");
   }
   return fault(
       dma::Rule::kOutsideLocalStore,
-      where + access + "address " + hexadecimal(trap.address) +
+      where + access + "address " + base::hex(trap.address, 5) +
           (trap.address < dma::kLocalStoreBytes
                ? ", which is no pointer in a kernel built for the host: its local store lies elsewhere"
                : ", which is neither in the local store nor an effective address"));

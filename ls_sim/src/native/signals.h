@@ -11,7 +11,7 @@ namespace softcell::ls_sim::native {
 /// to a thread that never calls the library.
 inline constexpr int kInterruptSignal = SIGSYS;
 
-/// Installs the handlers once per process. Signals that do not come from a kernel go to whoever handled them
+/// Installs the handlers once per process. Signals that do not come from a kernel go to the handlers of
 /// before.
 void install_signal_handlers();
 

@@ -14,7 +14,7 @@
 
 namespace softcell::ls_sim {
 
-/// Computes the end of each command at its issue. Which bytes move when is no matter of its: the MFC's schedule says so.
+/// Computes the end of each command at its issue. The MFC's schedule decides when bytes move, not this class.
 /// Used by the thread that runs the SPE.
 class MfcTimer {
  public:

@@ -14,7 +14,7 @@
 
 #include "../particles_where.h"
 #include "contact_world.h"
-#include "ppu/contacts/attachments.h"
+#include "ppu/attachments/attachments.h"
 #include "softcell/soft_bodies/attachment.h"
 #include "softcell/soft_bodies/fracture.h"
 #include "softcell/soft_bodies/state_hash.h"

@@ -1,6 +1,6 @@
 // Groups of contacts, and what is found out about them before they are solved.
 
-#include "ppu/contacts/contact_groups.h"
+#include "ppu/contact_solver/contact_groups.h"
 
 #include <gtest/gtest.h>
 
@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "contact_world.h"
-#include "ppu/contacts/group_turns.h"
-#include "ppu/contacts/hits.h"
-#include "ppu/contacts/presses.h"
-#include "ppu/contacts/touched_cells.h"
+#include "ppu/contact_solver/group_turns.h"
+#include "ppu/contact_solver/hits.h"
+#include "ppu/contact_solver/presses.h"
+#include "ppu/contact_solver/touched_cells.h"
 
 namespace softcell::ppu {
 namespace {

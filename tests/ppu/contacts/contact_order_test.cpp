@@ -1,6 +1,6 @@
 // Pairs of bodies in stages: who is solved at the same time shares no body.
 
-#include "ppu/contacts/contact_order.h"
+#include "ppu/contact_solver/contact_order.h"
 
 #include <gtest/gtest.h>
 

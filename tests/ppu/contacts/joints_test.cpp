@@ -11,8 +11,8 @@
 
 #include "contact_world.h"
 #include "ppu/bullet/joint_rows.h"
-#include "ppu/contacts/supports.h"
 #include "ppu/numbers/skyline_factor.h"
+#include "ppu/supports/supports.h"
 #include "softcell/spe_bodies/spe_runtime.h"
 
 namespace softcell::ppu {

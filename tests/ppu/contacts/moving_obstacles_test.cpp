@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "contact_world.h"
-#include "ppu/surfaces/moved_by_place.h"
+#include "ppu/obstacles/moved_by_place.h"
 #include "softcell/soft_bodies/attachment.h"
 
 namespace softcell::ppu {

@@ -1,6 +1,6 @@
 // Rigid bodies in sets for the SPEs.
 
-#include "ppu/contacts/rigid_sets.h"
+#include "ppu/contact_solver/rigid_sets.h"
 
 #include <gtest/gtest.h>
 

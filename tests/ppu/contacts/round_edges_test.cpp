@@ -8,8 +8,8 @@
 #include <numbers>
 #include <vector>
 
-#include "ppu/surfaces/obstacle.h"
-#include "ppu/surfaces/round_edges.h"
+#include "ppu/obstacles/obstacle.h"
+#include "ppu/obstacles/round_edges.h"
 
 namespace softcell::ppu {
 namespace {

@@ -13,8 +13,8 @@
 
 #include "../soft_body_2d_scenes.h"
 #include "contact_world.h"
-#include "ppu/contacts/attach_units.h"
-#include "ppu/contacts/contact_solver.h"
+#include "ppu/contact_solver/attach_units.h"
+#include "ppu/contact_solver/contact_solver.h"
 #include "ppu/spe_bodies/spe_contacts.h"
 #include "softcell/ls_sim/timing.h"
 #include "softcell/spe_bodies/spe_runtime.h"

@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "contact_world.h"
+#include "ppu/contact_solver/rigid_sets.h"
 #include "ppu/contacts/find_contacts.h"
-#include "ppu/contacts/rigid_sets.h"
 #include "ppu/numbers/box_around.h"
 #include "softcell/soft_bodies/state_hash.h"
 #include "softcell/spe_bodies/spe_runtime.h"

@@ -1,6 +1,6 @@
 // Rigid bodies between soft ones and what they lie on.
 
-#include "ppu/contacts/supports.h"
+#include "ppu/supports/supports.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "contact_world.h"
-#include "ppu/contacts/supported_set.h"
+#include "ppu/supports/supported_set.h"
 #include "softcell/spe_bodies/spe_runtime.h"
 
 namespace softcell::ppu {

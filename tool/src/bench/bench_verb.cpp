@@ -150,7 +150,7 @@ class BenchVerb final : public Verb {
   void add_to(CLI::App& command, Call& chosen) override {
     CLI::App* b = command.add_subcommand("bench", "Measure kernels, side by side in one run");
     b->add_option("--filter", options_.filter,
-                  "Only benchmarks in whose name this regular expression is found; others are not even built")
+                  "Prepare and measure only benchmarks in whose name this regular expression is found")
         ->type_name("REGEX");
     accept_whole_number(
         b->add_option("--rounds", options_.rounds,
@@ -160,8 +160,8 @@ class BenchVerb final : public Verb {
     b->add_flag("--list", options_.list, "Print the names of the benchmarks and measure nothing");
     b->add_option(
          "--compare", options_.compare,
-         "What --json wrote in an earlier run: beside each time stands how many times as long it takes "
-         "now")
+         "A file that --json wrote in an earlier run: also print how many times as long each benchmark "
+         "takes now")
         ->type_name("FILE");
     add_json_option(*b, options_.json, "the figures");
     b->callback([&] { chosen = [this] { return run_bench(options_); }; });

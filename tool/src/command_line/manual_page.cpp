@@ -89,7 +89,7 @@ constexpr const char* kExamples =
 
 std::string manual_page(const CommandVerb& top, const std::string& version) {
   std::string page = fmt::format(".TH SOFTCELL 1 \"\" \"softcell {}\" \"User Commands\"\n", version);
-  page += ".SH NAME\nsoftcell \\- run Cell/PS3 SPU job kernels on a PC\n.SH SYNOPSIS\n";
+  page += ".SH NAME\nsoftcell \\- run and check Cell/PS3 SPU kernels on a PC\n.SH SYNOPSIS\n";
   const std::vector<CommandLeaf> leaves = leaves_of(top);
   for (std::size_t i = 0; i < leaves.size(); ++i)
     page.append(i == 0 ? "" : ".br\n").append(synopsis_of(leaves[i])).append("\n");

@@ -88,8 +88,9 @@ class DemoVerbs final : public Verb {
   void add_2d(CLI::App& demo, Call& chosen) {
     CLI::App* d = demo.add_subcommand("2d", "Soft bodies in a Box2D world, stepped on six emulated SPEs");
     add_demo_options(*d, demo_2d_, "man");
-    d->add_option("--image", demo_2d_.image,
-                  "Put what is painted in this PNG picture into the scene, cut out (default: picture)")
+    d->add_option(
+         "--image", demo_2d_.image,
+         "Cut out what is painted in this PNG picture and put it into the scene (default scene: picture)")
         ->type_name("FILE");
     accept_whole_number(
         d->add_option("--cells", demo_2d_.cells,
@@ -113,15 +114,16 @@ class DemoVerbs final : public Verb {
     CLI::App* d =
         demo.add_subcommand("3d", "Soft bodies in a Bullet world, stepped and skinned on six emulated SPEs");
     add_demo_options(*d, demo_3d_, "arena");
-    d->add_option("--mesh", demo_3d_.model.mesh,
-                  "Put this glTF, OBJ, PLY or STL model into the scene, which must take one (default: drop)")
+    d->add_option(
+         "--mesh", demo_3d_.model.mesh,
+         "Put this glTF, OBJ, PLY or STL model into the scene, which must take one (default scene: drop)")
         ->type_name("FILE");
     d->add_option("--up", up_, "The model's axis that points upwards (default: y)")
         ->needs("--mesh")
         ->type_name("y|z");
-    d->add_option(
-         "--unit", demo_3d_.model.unit,
-         "One of the model's units in metres (default: it is made as large as what it takes the place of)")
+    d->add_option("--unit", demo_3d_.model.unit,
+                  "Length of one of the model's units in metres (default: the model gets the size of what it "
+                  "replaces)")
         ->needs("--mesh")
         ->type_name("METRES");
     CLI::Option* const cells =
@@ -137,14 +139,14 @@ class DemoVerbs final : public Verb {
         ->excludes(cells)
         ->type_name("LENGTH");
     d->add_option("--tessellate", demo_3d_.model.tessellation,
-                  "Halve edges of the model's triangles that are longer than so many cells, 0.125 to 100 (1: "
-                  "they follow the lattice)")
+                  "Halve edges of the model's triangles that are longer than this many cells, 0.125 to 100 "
+                  "(with 1 the surface follows the lattice)")
         ->needs("--mesh")
         ->type_name("CELLS");
     d->add_option("--view", view_3d_, "What is drawn of soft bodies (default: mesh)")
         ->type_name("mesh|lattice|rotations|contacts");
     d->add_option("--turntable", demo_3d_.turntable,
-                  "The camera goes about the scene once in so many seconds (with --headless)")
+                  "Move the camera around the scene once in this many seconds (with --headless)")
         ->type_name("SECONDS");
     d->add_option("--skin", skin_,
                   "Who makes mesh vertices from particles: spe (default), or gpu, a vertex shader")
@@ -186,7 +188,7 @@ class DemoVerbs final : public Verb {
     d.add_option("--video", options.video,
                  "Write a video to this file, which ends in .mp4, .webm, .gif or .apng (with --headless; "
                  "needs ffmpeg); "
-                 "of a run that is interrupted it has the frames so far")
+                 "if the run is interrupted, the video has the frames up to then")
         ->type_name("FILE");
     accept_whole_number(d.add_option("--fps", options.fps,
                                      "Frames a second of the video, 1 to 60 (default: 60, in a .gif 20)"),
@@ -205,7 +207,7 @@ class DemoVerbs final : public Verb {
     d.add_option("--size", size_, "Size of pictures in pixels, or of the window (default: 1280x720)")
         ->type_name("WIDTHxHEIGHT");
     d.add_option("--ui-scale", options.ui_scale,
-                 "Size of text and menus in a window, 0.5 to 4 (default: as dense as the display is)")
+                 "Size of text and menus in a window, 0.5 to 4 (default: the scale of the display)")
         ->type_name("FACTOR");
     accept_whole_number(d.add_option("--spes", options.spes, "SPEs at work, 1 to 6 (default: 6)"), 1,
                         dma::kSpeCount)

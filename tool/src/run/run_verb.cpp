@@ -250,7 +250,7 @@ class RunVerb final : public Verb {
   void add_to(CLI::App& command, Call& chosen) override {
     CLI::App* r = command.add_subcommand(
         "run", "Run a program that uses libspe2: softcell run --checked -- ./program its arguments");
-    r->add_option("PROGRAM", options_.words, "The program and its arguments, behind --")
+    r->add_option("PROGRAM", options_.words, "The program and its arguments, after --")
         ->required()
         ->expected(1, -1)
         ->type_name("PROGRAM");
@@ -258,10 +258,10 @@ class RunVerb final : public Verb {
     r->add_flag("--turns", options_.turns,
                 "SPEs run one at a time; whose turn it is follows from the seed of --dma random:SEED");
     r->add_flag("--checked", options_.checked,
-                "Take the checked images of the SPE programs and report every mistake in their loads "
+                "Use the checked images of the SPE programs and report every mistake in their loads "
                 "and stores");
     r->add_flag("--allocations", options_.allocations,
-                "Hold addresses of transfers against the blocks of the program's heap");
+                "Report transfers outside of the allocated blocks of the program's heap");
     r->add_flag(
         "--low-memory", options_.low_memory,
         "Keep all memory of the program below 4 GB, for code that keeps pointers in 32 bits; the program "

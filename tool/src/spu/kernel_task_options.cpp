@@ -14,7 +14,7 @@ void KernelTaskOptions::add_to(CLI::App& verb) {
       ->required()
       ->type_name("KERNEL");
   verb.add_flag("--checked", checked_,
-                "Take the checked image, IMAGE's .checked.spu.elf: findings name file and line");
+                "Use the checked image, IMAGE's .checked.spu.elf: findings name file and line");
   verb.add_option(
           "--engine", engine_,
           "What runs it: native for images built for the host, interpreter for programs built for the SPU "

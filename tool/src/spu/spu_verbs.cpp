@@ -65,8 +65,8 @@ class SpuVerbs final : public Verb {
         ->needs("--host-calls");
     r->add_flag(
         "--timing", run_.timing,
-        "Say what the run takes on a PS3 by a model of SPUs and transfers: cycles, stalls by cause and "
-        "function, waits for transfers; of a kernel built for the host only the waits");
+        "Report how long the run takes on a PS3, by a model of SPUs and transfers: cycles, stalls by cause "
+        "and function, waits for transfers; of a kernel built for the host only the waits");
     r->add_option("--coverage", run_.coverage,
                   "Write which lines and branches were executed, in the format of lcov")
         ->type_name("FILE")
@@ -133,7 +133,7 @@ class SpuVerbs final : public Verb {
         ->type_name("FILE");
     add_function_option(*d, disasm_.function);
     d->add_flag("--schedule", disasm_.with_schedule,
-                "Say in which cycle and which pipe each instruction issues");
+                "Print in which cycle and which pipe each instruction issues");
     add_json_option(*d, disasm_.json, "the instructions");
     d->callback([&] { chosen = [this] { return run_spu_disasm(disasm_); }; });
   }

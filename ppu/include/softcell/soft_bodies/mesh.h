@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -39,6 +40,17 @@ struct TriangleMesh {
 
   bool operator==(const TriangleMesh&) const = default;
 };
+
+/// A mesh from positions and triangles alone, for example those of a collision shape, with the normals that it needs: smooth across an edge
+/// at which the surface bends by 60 degrees or less, else sharp. Equal positions count as one; a position at a sharp edge becomes several
+/// vertices. Triangles without area and positions without a triangle are left out, so vertices have numbers of their own. Deterministic.
+/// Any thread.
+/// @param positions  metres
+/// @param triangles  numbers of positions, counter-clockwise seen from outside
+/// @throws std::runtime_error     a position is not finite
+/// @throws std::invalid_argument  a triangle names a position that does not exist
+TriangleMesh make_mesh(std::span<const Eigen::Vector3f> positions,
+                       std::span<const std::array<std::uint32_t, 3>> triangles);
 
 /// An axis-aligned box, metres.
 template <int kDimension>

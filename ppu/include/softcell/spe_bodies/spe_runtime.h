@@ -57,8 +57,8 @@ class SpeRuntime final : public SolverFactory {
   /// 15 chains; a solver takes one of them, a skinner two.
   /// @throws std::runtime_error  main memory is full, or there are 15 chains already.
   std::unique_ptr<SoftBodySolver<3>> make_solver() override;
-  /// A worker that finds and solves contacts of drawn surfaces in one Bullet world: BulletSoftBodies calls it. It takes two chains. @throws
-  /// std::runtime_error  main memory is full, or there are 15 chains already.
+  /// A worker that finds and solves contacts of drawn surfaces in one world: BulletSoftBodies and Box2dSoftBodies call it. It takes two
+  /// chains. @throws std::runtime_error  main memory is full, or there are 15 chains already.
   std::shared_ptr<ContactWorker> make_contact_worker() override;
   /// A solver for the soft bodies of one Box2D world: Box2dSoftBodies calls it. @throws as make_solver()
   std::unique_ptr<SoftBodySolver<2>> make_solver_2d() override;
