@@ -17,7 +17,7 @@ function(expect purpose expected_status expected)
   endif()
 endfunction()
 set(configure ${CMAKE_COMMAND} -S ${project} -B ${build} -G ${GENERATOR} -DSOFTCELL=${SOURCE} -DCMAKE_CXX_COMPILER=${COMPILER}
-  -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-O0 -DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER} -DSOFTCELL_UNITY_BUILD=ON)
+  -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-O0 -DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER})
 
 expect("a component that there is not" 1
   "SOFTCELL_COMPONENTS: softcell has no component 'bodies'; its components are spu, libspe2, soft_bodies, mesh_import, bullet, box2d, spe_bodies, render\\."
@@ -47,7 +47,7 @@ if(NOT commands MATCHES "ppu/spe_bodies/" OR commands MATCHES "-Werror|${SOURCE}
   message(FATAL_ERROR "softcell builds more than its libraries, or makes warnings errors:\n${commands}")
 endif()
 
-expect("configuring" 0 "" ${configure} -DSOFTCELL_COMPONENTS=spu "-DFIND_COMPONENTS=COMPONENTS\;spu\;OPTIONAL_COMPONENTS\;box2d")
+expect("configuring" 0 "" ${configure} -DSOFTCELL_COMPONENTS=spu -DSOFTCELL_UNITY_BUILD=ON "-DFIND_COMPONENTS=COMPONENTS\;spu\;OPTIONAL_COMPONENTS\;box2d")
 expect("building" 0 "unused" ${CMAKE_COMMAND} --build ${build} --parallel 2)
 expect("testing" 0 "100% tests passed" ${CMAKE_CTEST_COMMAND} --test-dir ${build} --output-on-failure)
 if(NOT EXISTS ${build}/somebody)
