@@ -30,7 +30,7 @@ using FaceOf = std::array<Eigen::Vector<float, kDimension>, kDimension>;
 
 constexpr std::uint32_t kFacesInLeaf = 4;
 constexpr float kEndless = std::numeric_limits<float>::max();
-constexpr float kRounding = 1e-5f;  // a ray at a border meets at least one of its two faces
+constexpr float kBorder = 1e-5f;  // a ray at a border meets at least one of its two faces
 
 template <int kDimension>
 float square_of_distance(const Bounds<kDimension>& box, const Eigen::Vector<float, kDimension>& point) {
@@ -105,7 +105,7 @@ float share_of(const FaceOf<2>& edge, const Vector2f& from, const Vector2f& alon
   const float area = cross(along, ab);
   if (area == 0) return kEndless;
   const float at = cross(off, along) / area;
-  if (at < -kRounding || at > 1 + kRounding) return kEndless;
+  if (at < -kBorder || at > 1 + kBorder) return kEndless;
   const float share = cross(off, ab) / area;
   return share >= 0 && share <= 1 ? share : kEndless;
 }
@@ -118,7 +118,7 @@ float share_of(const FaceOf<3>& triangle, const Vector3f& from, const Vector3f& 
   const float u = off.dot(across) / volume;
   const Vector3f turned = off.cross(ab);
   const float v = along.dot(turned) / volume;
-  if (u < -kRounding || v < -kRounding || u + v > 1 + kRounding) return kEndless;
+  if (u < -kBorder || v < -kBorder || u + v > 1 + kBorder) return kEndless;
   const float share = ac.dot(turned) / volume;
   return share >= 0 && share <= 1 ? share : kEndless;
 }
