@@ -210,7 +210,7 @@ std::variant<std::byte*, Fault> AddressSpace::resolve(EffectiveAddress ea, std::
     if (fault != nullptr && fault->rule == Rule::kEaNotMapped && local_stores_->is_sum_of_two(ea))
       fault->detail +=
           "; EA is a local store's plus a pointer of a kernel built for the host, which is no offset: "
-          "the kernel sends (unsigned)pointer & 0x3FFFF";
+          "its kernel sends (unsigned)pointer & 0x3FFFF";
     return resolved;
   }
   const std::shared_lock lock(registry_mutex_);
