@@ -73,9 +73,9 @@ struct Fused {
 
 /// One lane of an operation on up to three operands; one that it lacks is given as zero.
 /// @param as_fused  from three operands to a Fused; for a product z is a zero of its sign.
-template <class Operation, class AsFused>
-std::uint64_t lane_of_double(int lane, std::uint64_t x, std::uint64_t y, std::uint64_t z,
-                             Operation&& operation, AsFused&& as_fused, Fpscr& fpscr) {
+template <class AsFused>
+std::uint64_t lane_of_double(int lane, std::uint64_t x, std::uint64_t y, std::uint64_t z, AsFused&& as_fused,
+                             Fpscr& fpscr) {
   std::uint32_t flags = is_denormal(x) || is_denormal(y) || is_denormal(z) ? Fpscr::kDoubleDenormal : 0;
   const auto flushed = [](std::uint64_t bits) { return is_denormal(bits) ? bits & kDoubleSign : bits; };
   const Fused fused = as_fused(flushed(x), flushed(y), flushed(z));
@@ -83,8 +83,9 @@ std::uint64_t lane_of_double(int lane, std::uint64_t x, std::uint64_t y, std::ui
     fpscr.set_double(lane, flags | (rounded->is_inexact ? Fpscr::kDoubleInexact : 0));
     return rounded->bits;
   }
-  const std::uint64_t result =
-      bits_of(in_mode(fpscr.rounding(lane), of_bits(x), of_bits(y), of_bits(z), operation, flags));
+  const std::uint64_t result = bits_of(in_mode(
+      fpscr.rounding(lane), of_bits(fused.x), of_bits(fused.y), of_bits(fused.z),
+      [](__m128d a, __m128d b, __m128d c) { return _mm_fmadd_sd(a, b, c); }, flags));
   // Not for the NaN of an invalid operation: IEEE 754 has the same one.
   if (is_nan(x) || is_nan(y) || is_nan(z)) flags |= Fpscr::kDoubleNan;
   // The host does not look at the product when the addend is a NaN.
@@ -93,11 +94,11 @@ std::uint64_t lane_of_double(int lane, std::uint64_t x, std::uint64_t y, std::ui
   return is_nan(result) ? kTheNan : result;
 }
 
-template <class Operation, class AsFused>
-Quadword both_doubles(const In& in, Quadword third, Operation&& operation, AsFused&& as_fused, Fpscr& fpscr) {
+template <class AsFused>
+Quadword both_doubles(const In& in, Quadword third, AsFused&& as_fused, Fpscr& fpscr) {
   const auto lane = [&](int i) {
-    return lane_of_double(i, double_bits(in.a, i), double_bits(in.b, i), double_bits(third, i), operation,
-                          as_fused, fpscr);
+    return lane_of_double(i, double_bits(in.a, i), double_bits(in.b, i), double_bits(third, i), as_fused,
+                          fpscr);
   };
   return from_doubles(lane(0), lane(1));
 }
@@ -105,44 +106,32 @@ Quadword both_doubles(const In& in, Quadword third, Operation&& operation, AsFus
 inline constexpr std::uint64_t kDoubleOne = 0x3FF0000000000000;
 
 inline Quadword dfa(const In& in, Fpscr& fpscr) {
-  return both_doubles(
-      in, Quadword{}, [](__m128d x, __m128d y, __m128d) { return _mm_add_sd(x, y); },
-      [](std::uint64_t x, std::uint64_t y, std::uint64_t) {
-        return Fused{x, kDoubleOne, y};
-      },
-      fpscr);
+  const auto as_fused = [](std::uint64_t x, std::uint64_t y, std::uint64_t) {
+    return Fused{x, kDoubleOne, y};
+  };
+  return both_doubles(in, Quadword{}, as_fused, fpscr);
 }
 inline Quadword dfs(const In& in, Fpscr& fpscr) {
-  return both_doubles(
-      in, Quadword{}, [](__m128d x, __m128d y, __m128d) { return _mm_sub_sd(x, y); },
-      [](std::uint64_t x, std::uint64_t y, std::uint64_t) {
-        return Fused{x, kDoubleOne, y ^ kDoubleSign};
-      },
-      fpscr);
+  const auto as_fused = [](std::uint64_t x, std::uint64_t y, std::uint64_t) {
+    return Fused{x, kDoubleOne, y ^ kDoubleSign};
+  };
+  return both_doubles(in, Quadword{}, as_fused, fpscr);
 }
 inline Quadword dfm(const In& in, Fpscr& fpscr) {
-  return both_doubles(
-      in, Quadword{}, [](__m128d x, __m128d y, __m128d) { return _mm_mul_sd(x, y); },
-      [](std::uint64_t x, std::uint64_t y, std::uint64_t) {
-        return Fused{x, y, (x ^ y) & kDoubleSign};
-      },
-      fpscr);
+  const auto as_fused = [](std::uint64_t x, std::uint64_t y, std::uint64_t) {
+    return Fused{x, y, (x ^ y) & kDoubleSign};
+  };
+  return both_doubles(in, Quadword{}, as_fused, fpscr);
 }
 inline Quadword dfma(const In& in, Fpscr& fpscr) {
-  return both_doubles(
-      in, in.t, [](__m128d x, __m128d y, __m128d z) { return _mm_fmadd_sd(x, y, z); },
-      [](std::uint64_t x, std::uint64_t y, std::uint64_t z) {
-        return Fused{x, y, z};
-      },
-      fpscr);
+  const auto as_fused = [](std::uint64_t x, std::uint64_t y, std::uint64_t z) { return Fused{x, y, z}; };
+  return both_doubles(in, in.t, as_fused, fpscr);
 }
 inline Quadword dfms(const In& in, Fpscr& fpscr) {
-  return both_doubles(
-      in, in.t, [](__m128d x, __m128d y, __m128d z) { return _mm_fmsub_sd(x, y, z); },
-      [](std::uint64_t x, std::uint64_t y, std::uint64_t z) {
-        return Fused{x, y, z ^ kDoubleSign};
-      },
-      fpscr);
+  const auto as_fused = [](std::uint64_t x, std::uint64_t y, std::uint64_t z) {
+    return Fused{x, y, z ^ kDoubleSign};
+  };
+  return both_doubles(in, in.t, as_fused, fpscr);
 }
 
 /// Negates what was rounded, but not a NaN.

@@ -123,8 +123,13 @@ Moves moves_of(Mnemonic mnemonic) {
   }
 }
 
-/// Bytes of the lanes in which an instruction adds, or multiplies and adds, each lane by itself; 0: it does not.
-int lane_of_sum(Mnemonic mnemonic) {
+/// An instruction that adds, or multiplies and adds, each lane by itself.
+struct Sum {
+  int lane_bytes = 0;  ///< 0: the instruction is no such one
+  bool multiplies = false;
+};
+
+Sum sum_of(Mnemonic mnemonic) {
   using enum Mnemonic;
   switch (mnemonic) {
     case a:
@@ -133,27 +138,24 @@ int lane_of_sum(Mnemonic mnemonic) {
     case sfi:
     case fa:
     case fs:
+      return {4, false};
     case fm:
     case fma:
     case fms:
     case fnms:
-      return 4;
+      return {4, true};
     case dfa:
     case dfs:
+      return {8, false};
     case dfm:
     case dfma:
     case dfms:
     case dfnma:
     case dfnms:
-      return 8;
+      return {8, true};
     default:
-      return 0;
+      return {};
   }
-}
-bool multiplies(Mnemonic mnemonic) {
-  using enum Mnemonic;
-  return mnemonic == fm || mnemonic == fma || mnemonic == fms || mnemonic == fnms || mnemonic == dfm ||
-         mnemonic == dfma || mnemonic == dfms || mnemonic == dfnma || mnemonic == dfnms;
 }
 
 /// All bits of the lanes of which one is set. @param bytes  of a lane, 4 or 8
@@ -252,7 +254,8 @@ std::optional<Quadword> UndefinedValues::undefined_without_trials(const Operatio
     return constant ^ moved([&](std::uint8_t reg) { return undefined_[reg]; });
   }
 
-  const int lane = lane_of_sum(op.mnemonic);
+  const Sum sum = sum_of(op.mnemonic);
+  const int lane = sum.lane_bytes;
   if (lane == 0) return {};
   struct Operand {
     std::uint8_t bit, reg;
@@ -274,7 +277,7 @@ std::optional<Quadword> UndefinedValues::undefined_without_trials(const Operatio
     result |= undefined;
     if (count <= factors.size()) factors[count - 1] = undefined;
   }
-  if (!multiplies(op.mnemonic)) return result;
+  if (!sum.multiplies) return result;
   // A product with zero, or with a denormal that counts as zero, does not depend on the other factor.
   const Quadword exponent =
       lane == 4 ? (Quadword)splat_word(0x7F800000) : (Quadword)U64x2{kExponents, kExponents};
