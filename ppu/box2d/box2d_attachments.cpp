@@ -26,6 +26,13 @@ AttachmentFrame<2> frame_of(const b2Transform& pose) {
   return frame;
 }
 
+bool is_awake(const Box2dBody& body) { return !body.soft().asleep(); }
+
+/// Whether a rigid body keeps what is attached to it awake. @param pose  that it had before
+bool is_disturbed(const b2Body& rigid, const b2Transform& pose) {
+  return is_simulated(rigid) ? rigid.IsAwake() : !is_same(rigid.GetTransform(), pose) || !stands_still(rigid);
+}
+
 }  // namespace
 
 bool Box2dAttachments::may_touch(const b2Body& a, const b2Body& b) const {
@@ -68,6 +75,29 @@ void Box2dAttachments::wake(const Link& link) {
   if (link.rigid != nullptr) link.rigid->SetAwake(true);
 }
 
+/// What is attached falls asleep together, so something has disturbed what is awake or has moved.
+void Box2dAttachments::wake_disturbed() {
+  for (bool has_woken = true; has_woken;) {
+    has_woken = false;
+    for (const auto& link : links_) {
+      const bool has_awake = is_awake(*link->a) || (link->b != nullptr && is_awake(*link->b)) ||
+                             (link->rigid != nullptr && is_disturbed(*link->rigid, link->pose));
+      const bool has_sleepers =
+          !is_awake(*link->a) || (link->b != nullptr && !is_awake(*link->b)) ||
+          (link->rigid != nullptr && is_simulated(*link->rigid) && !link->rigid->IsAwake());
+      if (!has_awake || !has_sleepers) continue;
+      wake(*link);
+      has_woken = true;
+    }
+  }
+  for (const auto& link : links_) {
+    if (link->rigid == nullptr) continue;
+    link->pose = link->rigid->GetTransform();
+    // Box2D would put it to sleep by itself, and stop it.
+    if (link->rigid->GetType() == b2_dynamicBody && is_awake(*link->a)) link->rigid->SetAwake(true);
+  }
+}
+
 AttachmentId Box2dAttachments::add(Box2dBody& body, const Patch<2>& patch, b2Body* rigid,
                                    const AttachmentSettings<2>& settings) {
   validate(settings);
@@ -88,7 +118,8 @@ AttachmentId Box2dAttachments::add(Box2dBody& body, const Patch<2>& patch, b2Bod
                   .rigid = rigid,
                   .touch = touches(full),
                   .rows = AttachmentRows<2>(full, particles, frame),
-                  .hold = {.frame = frame, .goal = frame.position}});
+                  .hold = {.frame = frame, .goal = frame.position},
+                  .pose = rigid != nullptr ? rigid->GetTransform() : b2Transform()});
 }
 
 AttachmentId Box2dAttachments::add(Box2dBody& body, const Patch<2>& patch, Box2dBody& other,
@@ -100,7 +131,8 @@ AttachmentId Box2dAttachments::add(Box2dBody& body, const Patch<2>& patch, Box2d
                   .touch = touches(settings),
                   .rows = AttachmentRows<2>(settings, particles_of(patch, body.soft()),
                                             particles_of(other_patch, other.soft())),
-                  .hold = {}});
+                  .hold = {},
+                  .pose = {}});
 }
 
 AttachmentId Box2dAttachments::add(Link link) {
@@ -138,6 +170,7 @@ void Box2dAttachments::shift(const Vector2f& by) {
     link->hold.frame.position += by;
     link->hold.frame.end_position += by;
     link->hold.goal += by;
+    link->pose.p += to_box2d(by);
   }
 }
 
@@ -166,6 +199,18 @@ void Box2dAttachments::follow_pieces(const Box2dBody& body, std::span<const Piec
 
 bool Box2dAttachments::holds(const Box2dBody& body) const {
   return std::ranges::any_of(links_, [&](const auto& link) { return link->a == &body || link->b == &body; });
+}
+
+bool Box2dAttachments::is_being_moved(const Box2dBody& body) const {
+  return std::ranges::any_of(links_, [&](const auto& link) { return link->a == &body && link->hold.moves; });
+}
+
+void Box2dAttachments::append_neighbours(SoftNeighbours& neighbours) {
+  end_gone();
+  for (const auto& link : links_) {
+    if (link->b != nullptr) neighbours.soft.emplace_back(link->a, link->b);
+    if (link->rigid != nullptr) neighbours.rigid.emplace_back(link->a, link->rigid);
+  }
 }
 
 void Box2dAttachments::end_gone() {
@@ -229,6 +274,7 @@ std::span<const AttachmentInStep<2>> Box2dAttachments::begin(
     std::span<const std::unique_ptr<Box2dBody>> bodies, const std::function<RigidInStep(b2Body&)>& in_step_of,
     float step) {
   end_gone();
+  wake_disturbed();
   to_solve_.clear();
   for (const auto& link : links_) {
     link->hold.begin(step);

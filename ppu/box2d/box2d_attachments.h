@@ -18,6 +18,7 @@
 #include "ppu/attachments/attachments.h"
 #include "ppu/box2d/box2d_body.h"
 #include "ppu/box2d/box2d_filter.h"
+#include "ppu/box2d/rest.h"
 #include "softcell/soft_bodies/attachment.h"
 
 namespace softcell::ppu {
@@ -58,7 +59,10 @@ class Box2dAttachments {
                      std::span<const std::vector<std::uint32_t>> vanished);
   /// Removes the attachments of a soft body that is being removed.
   void forget(const Box2dBody& body);
-  bool holds(const Box2dBody& body) const;
+  /// Whether the program still moves a place in the world to which the body is attached.
+  bool is_being_moved(const Box2dBody& body) const;
+  /// Adds what attachments connect, except what has vanished. Ends those to rigid bodies that have.
+  void append_neighbours(SoftNeighbours& neighbours);
 
   struct RigidInStep {
     std::uint32_t number;  ///< that the caller gives it
@@ -83,6 +87,7 @@ class Box2dAttachments {
     bool touch = false;
     AttachmentRows<2> rows;
     HeldPlace<2> hold;
+    b2Transform pose{};  // of the rigid body, when a step last began
   };
   /// A soft body in one step.
   struct InStep {
@@ -97,6 +102,9 @@ class Box2dAttachments {
   void release(const Link& link);
   void refilter(const Link& link);
   static void wake(const Link& link);
+  /// Wakes sleepers that are attached to something which is awake or has moved, those attached to these, and so on.
+  void wake_disturbed();
+  bool holds(const Box2dBody& body) const;
   void lay_out(const Box2dBody& body, InStep& in_step, float step) const;
   void finish(Box2dBody& body, const InStep& in_step, float step) const;
   std::uint32_t number_of(b2Body& rigid, float step);

@@ -11,6 +11,7 @@
 #include <span>
 
 #include "ppu/bodies/stillness.h"
+#include "softcell/base/assert.h"
 #include "softcell/soft_bodies/contact.h"
 #include "softcell/soft_bodies/soft_body.h"
 
@@ -95,6 +96,11 @@ bool has_body(const b2World& world, const b2Body* body);
 /// Whether Box2D simulates a rigid body's own motion: a disabled body stands still, whatever its velocity.
 inline bool is_simulated(const b2Body& rigid) {
   return rigid.IsEnabled() && rigid.GetType() == b2_dynamicBody;
+}
+/// Whether a body that Box2D does not simulate stays where it is, unless the program moves it by its place.
+inline bool stands_still(const b2Body& rigid) {
+  SC_ASSERT(!is_simulated(rigid), "a body of {} kg moves by itself", rigid.GetMass());
+  return !rigid.IsEnabled() || (rigid.GetLinearVelocity() == b2Vec2_zero && rigid.GetAngularVelocity() == 0);
 }
 /// 1/kg; 0: it has no fixture with a density, so that impulses do not move it. @pre it is dynamic
 float inverse_mass_of(const b2Body& body);

@@ -94,14 +94,18 @@ struct Box2dSoftBodies::Impl {
 
   /// @pre bodies may sleep
   void let_sleep(float step) {
+    // What the program moves is never still, however slow it is.
     for (const auto& body : bodies)
-      if (!body->soft().asleep() && !attachments.holds(*body)) body->count_stillness(step, sleep->speed);
+      if (!body->soft().asleep())
+        body->count_stillness(step, attachments.is_being_moved(*body) ? 0 : sleep->speed);
     if (surfaces) surfaces->forget_destroyed();
-    static const SoftTouches kNone;
-    const SoftTouches& touches = surfaces ? surfaces->touches() : kNone;
+    neighbours.soft.clear();
+    neighbours.rigid.clear();
+    if (surfaces) neighbours = surfaces->touches();
+    attachments.append_neighbours(neighbours);
     for (const auto& body : bodies) {
       if (body->soft().asleep()) continue;
-      for (Box2dBody* const resting : rest.settle(*body, *sleep, touches))
+      for (Box2dBody* const resting : rest.settle(*body, *sleep, neighbours))
         if (surfaces) surfaces->let_lie(*resting);
     }
   }
@@ -306,6 +310,7 @@ struct Box2dSoftBodies::Impl {
   PartingPieces parting;
   std::optional<SurfaceContacts2d> surfaces;  // none: bodies touch with circles
   std::optional<SleepSettings> sleep;
+  SoftNeighbours neighbours;   // while it is decided who falls asleep
   std::optional<float> begun;  // seconds, between begin_step() and end_step()
   SoftBodyTimes times;
   StepAhead<2> solve;                    // of `bodies`

@@ -13,8 +13,8 @@
 
 namespace softcell::ppu {
 
-/// Contacts of soft bodies that Box2D does not know of.
-struct SoftTouches {
+/// What soft bodies touch or are attached to, as far as Box2D does not know of it.
+struct SoftNeighbours {
   std::vector<std::pair<Box2dBody*, Box2dBody*>> soft;
   std::vector<std::pair<Box2dBody*, b2Body*>> rigid;
 };
@@ -30,16 +30,16 @@ class Rest {
       : world_(world), soft_body_of_(std::move(soft_body_of)) {}
 
   /// Puts `body` to sleep with all that it touches, if all of it has been at rest for long enough.
-  /// @param touches  contacts besides those that Box2D knows of
+  /// @param beside  what keeps bodies awake besides what Box2D knows to touch or to be joined
   /// @return  the soft bodies put to sleep  @pre  the body is awake
   std::span<Box2dBody* const> settle(Box2dBody& body, const SleepSettings& settings,
-                                     const SoftTouches& touches);
+                                     const SoftNeighbours& beside);
 
  private:
   bool rests(const Box2dBody& body, const SleepSettings& settings) const;
   bool rests(const b2Body& body, const SleepSettings& settings) const;
-  void add_neighbours(b2Body& body, const SoftTouches& touches);
-  void add_neighbours(Box2dBody& body, const SoftTouches& touches);
+  void add_neighbours(b2Body& body, const SoftNeighbours& beside);
+  void add_neighbours(Box2dBody& body, const SoftNeighbours& beside);
   void add(b2Body& body);
   void add(Box2dBody& body);
 

@@ -76,10 +76,8 @@ void SurfaceContacts2d::lift(const Box2dBody& body, Kept& kept, float step) {
   for (Vector3f& v : kept.velocities) v.head<2>() += fall;
 }
 
-/// Attached bodies do not sleep: wakes the rigid ones.
 void SurfaceContacts2d::begin_attachments(Bodies bodies, Box2dAttachments& attachments, float step) {
   const auto in_step_of = [&](b2Body& rigid) {
-    if (rigid.GetType() == b2_dynamicBody) rigid.SetAwake(true);
     return Box2dAttachments::RigidInStep{obstacles_.rigid_of(rigid), obstacles_.pose_of(rigid)};
   };
   attachments_.clear();

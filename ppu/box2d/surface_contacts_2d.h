@@ -61,7 +61,7 @@ class SurfaceContacts2d {
   void adopt(std::unique_ptr<Model> piece);
 
   /// Contacts of the last step with an impulse above 0.
-  const SoftTouches& touches() const { return touches_; }
+  const SoftNeighbours& touches() const { return touches_; }
   /// Forgets touches of rigid bodies that the program has destroyed since the step. Bodies that touched them do not fall asleep yet.
   void forget_destroyed();
   /// Appends the contacts of the last step whose impulse is above 0.
@@ -149,7 +149,7 @@ class SurfaceContacts2d {
   std::vector<std::uint32_t> moving_;      // bodies that wake those in their way
   std::vector<const SoftBody<2>*> softs_;  // of the last step
   std::vector<PressingContact> pressing_;  // of the last step
-  SoftTouches touches_;
+  SoftNeighbours touches_;
   std::vector<const b2Body*> living_;  // while destroyed bodies are looked for
   std::uint32_t next_number_ = 0;
   // Used while events are recorded:

@@ -13,6 +13,7 @@
 
 #include "particles_where.h"
 #include "soft_body_2d_scenes.h"
+#include "softcell/soft_bodies/state_hash.h"
 #include "support/slow_build.h"
 
 namespace softcell::ppu {
@@ -486,6 +487,156 @@ TEST(Box2dAttachmentsOfDrawnEdges, HoldInTheStepInWhichSomethingLands) {
 }
 
 /// A world without attachments has its own filter, and gets it back.
+/// Things that hang from each other, which may sleep: a plank from the world, a box from it, and a second plank from the box.
+struct Mobile {
+  explicit Mobile(ContactMethod contacts) : world(9.81f, contacts) {
+    world.soft.let_sleep(SleepSettings{});
+    upper = &world.soft.add(rectangle_model({6, 3}, calm()), {0, 3});
+    box = world.add_box({0, 2.5f}, {0.2f, 0.1f}, 200);
+    lower = &world.soft.add(rectangle_model({3, 3}, calm()), {0, 1.7f});
+    to_world = world.soft.attach(*upper, Patch<2>::of_surface({0, 3.3f}, 0.15f));
+    to_box = world.soft.attach(*upper, Patch<2>::of_surface({0, 3}, 0.15f), *box, rope({0, 2.6f}));
+    from_box = world.soft.attach(*lower, Patch<2>::of_surface({0, 2}, 0.15f), *box, rope({0, 2.4f}));
+  }
+  static AttachmentSettings<2> rope(const Vector2f& point) {
+    return {.kind = AttachmentKind::kRope, .point = point, .length = 0.45f};
+  }
+  static SoftBodySettings calm() {
+    SoftBodySettings settings = firm();
+    settings.damping = 0.5f;
+    return settings;
+  }
+  bool all_sleep() const { return upper->asleep() && !box->IsAwake() && lower->asleep(); }
+  bool none_sleeps() const { return !upper->asleep() && box->IsAwake() && !lower->asleep(); }
+  void settle() {
+    box->SetLinearDamping(2);
+    box->SetAngularDamping(2);
+    world.run(20);
+    ASSERT_TRUE(all_sleep());
+  }
+
+  World2d world;
+  SoftBody<2>*upper, *lower;
+  b2Body* box;
+  AttachmentId to_world{}, to_box{}, from_box{};
+};
+
+TEST_P(Box2dAttachments, WhatIsAttachedSleepsTogetherAndStaysWhereItIs) {
+  Mobile mobile(GetParam());
+  bool together = true;
+  for (int i = 0; i < 2400; ++i) {
+    mobile.world.soft.step(kStepOf2d);
+    together &= mobile.all_sleep() || mobile.none_sleeps();
+  }
+  EXPECT_TRUE(together);
+  ASSERT_TRUE(mobile.all_sleep());
+  const float force = mobile.world.soft.attachment(mobile.to_world)->force.norm();
+  const float weight =
+      9.81f * (mass_of_body(*mobile.upper) + mass_of_body(*mobile.lower) + mobile.box->GetMass());
+  EXPECT_NEAR(force, weight, 0.1f * weight) << "it is told what the weld carried last";
+  const std::uint64_t upper = state_hash(*mobile.upper), lower = state_hash(*mobile.lower);
+  mobile.world.run(2);
+  EXPECT_TRUE(mobile.all_sleep());
+  EXPECT_EQ(state_hash(*mobile.upper), upper);
+  EXPECT_EQ(state_hash(*mobile.lower), lower);
+}
+
+/// Whatever disturbs a part wakes all of it.
+TEST_P(Box2dAttachments, WhatIsAttachedWakesTogether) {
+  const struct {
+    const char* name;
+    void (*disturb)(Mobile& mobile);
+  } kCases[] = {
+      {"the upper end is moved",
+       [](Mobile& m) {
+         const Vector2f there = m.world.soft.attachment_ends(m.to_world)->other;
+         m.world.soft.move_attachment(m.to_world, there + Vector2f(0.1f, 0), 0, 0.5f);
+       }},
+      {"the box is pushed",
+       [](Mobile& m) {
+         m.box->ApplyLinearImpulseToCenter({0.5f, 0}, true);
+       }},
+      {"the box is put elsewhere",
+       [](Mobile& m) {
+         m.box->SetTransform(m.box->GetPosition() + b2Vec2(0.02f, 0), 0);
+         m.box->SetAwake(true);
+       }},
+      {"the lower plank is pushed",
+       [](Mobile& m) {
+         m.lower->add_velocity({0.5f, 0});
+       }},
+      {"the weld is let go", [](Mobile& m) { m.world.soft.detach(m.to_world); }},
+      {"gravity turns",
+       [](Mobile& m) {
+         m.world.box2d.SetGravity({1, -9.81f});
+       }},
+      {"the lower plank is let go", [](Mobile& m) { m.world.soft.detach(m.from_box); }},
+  };
+  for (const auto& [name, disturb] : kCases) {
+    SCOPED_TRACE(name);
+    Mobile mobile(GetParam());
+    ASSERT_NO_FATAL_FAILURE(mobile.settle());
+    disturb(mobile);
+    for (int i = 0; i < 3; ++i) mobile.world.soft.step(kStepOf2d);
+    EXPECT_TRUE(mobile.none_sleeps());
+  }
+}
+
+TEST_P(Box2dAttachments, WakeWhenTheRigidBodyTheyHangOnIsMovedOrVanishes) {
+  enum class Move { kPlace, kVelocity, kGone };
+  for (const Move move : {Move::kPlace, Move::kVelocity, Move::kGone}) {
+    SCOPED_TRACE(static_cast<int>(move));
+    World2d w(9.81f, GetParam());
+    w.soft.let_sleep(SleepSettings{});
+    b2Body* const beam = w.add_box({0, 2}, {0.5f, 0.1f});
+    if (move == Move::kVelocity) beam->SetType(b2_kinematicBody);
+    SoftBody<2>& body = w.soft.add(rectangle_model({6, 3}, Mobile::calm()), {0, 1.6f});
+    w.soft.attach(body, Patch<2>::of_surface({0, 1.9f}, 0.2f), *beam);
+    w.run(12);
+    ASSERT_TRUE(body.asleep());
+    const float before = middle_of(body).y();
+    if (move == Move::kPlace) beam->SetTransform({0, 2.05f}, 0);
+    if (move == Move::kVelocity) beam->SetLinearVelocity({0, 0.02f});  // slower than what counts as rest
+    if (move == Move::kGone) w.box2d.DestroyBody(beam);
+    w.run(2.5f);
+    EXPECT_FALSE(move != Move::kPlace && body.asleep());
+    if (move == Move::kGone) {
+      EXPECT_LT(middle_of(body).y(), before - 5);
+    } else {
+      EXPECT_NEAR(middle_of(body).y(), before + 0.05f, 0.01f);
+    }
+  }
+}
+
+/// A place that the program moves slower than what counts as rest takes the body along.
+TEST_P(Box2dAttachments, FollowAPlaceThatMovesSlowly) {
+  World2d w(9.81f, GetParam());
+  w.soft.let_sleep(SleepSettings{});
+  SoftBody<2>& body = w.soft.add(rectangle_model({6, 3}, Mobile::calm()), {0, 1});
+  const AttachmentId hand = w.soft.attach(body, Patch<2>::of_surface({0, 1.3f}, 0.2f));
+  w.run(12);
+  ASSERT_TRUE(body.asleep());
+  const Vector2f before = middle_of(body);
+  w.soft.move_attachment(hand, w.soft.attachment_ends(hand)->other + Vector2f(0.1f, 0), 0, 5);
+  bool slept = false;
+  for (int i = 0; i < 590; ++i) {
+    w.soft.step(kStepOf2d);
+    slept |= body.asleep();
+  }
+  EXPECT_FALSE(slept);
+  EXPECT_NEAR(middle_of(body).x(), before.x() + 0.1f, 0.01f);
+  w.run(10);
+  EXPECT_TRUE(body.asleep());
+}
+
+TEST_P(Box2dAttachments, SleepOnWhenTheOriginMoves) {
+  Mobile mobile(GetParam());
+  ASSERT_NO_FATAL_FAILURE(mobile.settle());
+  mobile.world.soft.shift_origin({-7, 3});
+  mobile.world.run(0.5f);
+  EXPECT_TRUE(mobile.all_sleep());
+}
+
 TEST(Box2dAttachmentsOfCircles, LeaveTheWorldsFilterAsItWas) {
   b2World world({0, 0});
   b2ContactFilter* const before = world.GetContactManager().m_contactFilter;

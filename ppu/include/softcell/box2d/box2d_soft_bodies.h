@@ -110,7 +110,7 @@ class Box2dSoftBodies {
   /// Holds a patch of a body at its present place in the world, which move_attachment() can move.
   ///
   /// begin_step() solves attachments after the shape matching, together with contacts; with ContactMethod::kSpheres before Box2D solves
-  /// contacts. The bodies wake, and do not sleep while they are attached. With ContactMethod::kSpheres, softcell installs a contact filter
+  /// contacts. The bodies wake, and from then on sleep and wake together. With ContactMethod::kSpheres, softcell installs a contact filter
   /// if attached sides shall not touch. The filter asks the world's own filter first, which softcell restores at the end. A filter that the
   /// caller installs later must call the one that it replaces (b2ContactManager::m_contactFilter).
   /// @throws std::invalid_argument  a body is not one of these; a setting is out of its range; the patch is empty, or too small for this
