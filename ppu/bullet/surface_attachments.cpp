@@ -58,7 +58,8 @@ AttachmentId SurfaceAttachments::add(SurfaceBody& body, const Patch<3>& patch, b
                   .rigid_number = number,
                   .touch = touches(full),
                   .rows = AttachmentRows<3>(full, particles, frame),
-                  .hold = {.frame = frame, .goal = frame.position}});
+                  .hold = {.frame = frame, .goal = frame.position},
+                  .pose = rigid != nullptr ? rigid->getWorldTransform() : btTransform::getIdentity()});
 }
 
 AttachmentId SurfaceAttachments::add(SurfaceBody& body, const Patch<3>& patch, SurfaceBody& other,
@@ -70,7 +71,8 @@ AttachmentId SurfaceAttachments::add(SurfaceBody& body, const Patch<3>& patch, S
                   .touch = touches(settings),
                   .rows = AttachmentRows<3>(settings, particles_of(patch, body.soft(), body.contact()),
                                             particles_of(other_patch, other.soft(), other.contact())),
-                  .hold = {}});
+                  .hold = {},
+                  .pose = btTransform::getIdentity()});
 }
 
 AttachmentId SurfaceAttachments::add(Link link) {
@@ -181,10 +183,20 @@ void SurfaceAttachments::find_islands() {
     for (SurfaceBody* const body : island.bodies) body->set_attached(true);
 }
 
+/// Whether the program has given a static or kinematic body another place since the last call.
+bool SurfaceAttachments::has_program_moved(Link& link) {
+  if (link.rigid == nullptr || is_moved_by_bullet(*link.rigid)) return false;
+  const btTransform before = std::exchange(link.pose, link.rigid->getWorldTransform());
+  return !(before == link.pose);
+}
+
 void SurfaceAttachments::begin() {
   end_gone();
   for (const Island& island : islands_) {
-    const bool awake = std::any_of(island.bodies.begin(), island.bodies.end(),
+    bool moved = false;
+    for (Link* const link : island.links) moved |= has_program_moved(*link);
+    const bool awake = moved ||
+                       std::any_of(island.bodies.begin(), island.bodies.end(),
                                    [](const auto* body) { return !body->soft().asleep(); }) ||
                        std::any_of(island.rigids.begin(), island.rigids.end(),
                                    [&](const auto* rigid) {
@@ -195,8 +207,9 @@ void SurfaceAttachments::begin() {
                                    }) ||
                        (!island.bodies.empty() && island.bodies.front()->notices_a_change());
     if (!awake) continue;
+    // What the program moves, however slowly, takes along bodies that would otherwise fall asleep.
     for (SurfaceBody* const body : island.bodies)
-      if (body->soft().asleep()) body->rouse();
+      if (moved || body->soft().asleep()) body->rouse();
     for (btRigidBody* const rigid : island.rigids)
       if (!rigid->isActive()) rigid->activate();
   }

@@ -81,17 +81,19 @@ class SurfaceAttachments {
     bool touch = false;
     AttachmentRows<3> rows;
     HeldPlace<3> hold;
+    btTransform pose{};  // of the rigid body, before the last substep
   };
   /// Bodies that are attached to each other, directly or through others.
   struct Island {
     std::vector<SurfaceBody*> bodies;
     std::vector<btRigidBody*> rigids;
-    std::vector<const Link*> links;
+    std::vector<Link*> links;
   };
 
   AttachmentId add(Link link);
   void find_islands();
   static void rouse(const Link& link);
+  static bool has_program_moved(Link& link);
   bool is_there(const Link& link) const;
   void end_gone();
 
