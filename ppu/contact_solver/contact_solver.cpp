@@ -35,7 +35,7 @@ void ContactSolver::step(std::span<const BodyInSubstep> bodies, std::span<const 
   pairs_.clear();
   for (const ContactGroup& group : groups_.of_pairs()) pairs_.emplace_back(group.a, group.b);
   order_.arrange(bodies_, pairs_);
-  crushed_.hold_pushes(groups_.all());
+  crushed_.hold_pushes(groups_.all(), bodies_);
   find_supports(rigids, links, step);
   if (has_attachments()) held_presses_.choose(groups_.with_rigid(), bodies_, *attachments, rigids);
   bounces_.clear();
@@ -44,7 +44,6 @@ void ContactSolver::step(std::span<const BodyInSubstep> bodies, std::span<const 
       solve_with_worker(rigids, step);
     else
       solve_here(rigids, step);
-    crushed_.hold_pushes_by_friction(groups_.with_rigid(), bodies_, rigids);
   }
   take_back_lost_spin(step);
   release_supports();

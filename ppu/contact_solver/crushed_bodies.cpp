@@ -29,36 +29,15 @@ bool CrushedBodies::hold(std::uint32_t number, ContactBody& body, float step) {
   return velocities_changed;
 }
 
-void CrushedBodies::hold_pushes(std::span<ContactGroup> groups) const {
+void CrushedBodies::hold_pushes(std::span<ContactGroup> groups, std::span<const ContactBody> bodies) const {
   for (ContactGroup& group : groups) {
     if (!is_crushed_[group.a] && !is_crushed_[group.b]) continue;
-    for (SoftContact& contact : group.contacts) contact.holds_pushes = true;
+    const ContactBody& a = bodies[group.a];
+    const ContactBody& b = bodies[group.b];
+    for (SoftContact& contact : group.contacts) ppu::hold_pushes(contact, a, group.with_rigid ? nullptr : &b);
     if (!group.by_worker) continue;
-    for (spu::SolveContact& contact : group.solved.contacts) ppu::hold_pushes(contact);
+    for (spu::SolveContact& contact : group.solved.contacts) ppu::hold_pushes(contact, a, b);
     group.solved.pushes = true;
-  }
-}
-
-void CrushedBodies::hold_pushes_by_friction(std::span<const ContactGroup> groups,
-                                            std::span<ContactBody> bodies,
-                                            std::span<const ContactRigid> rigids) const {
-  constexpr int kIterations = 3;
-  for (const ContactGroup& group : groups) {
-    if (!is_crushed_[group.a]) continue;
-    ContactBody& body = bodies[group.a];
-    for (int i = 0; i < kIterations; ++i)
-      for (std::size_t c = 0; c < group.contacts.size(); ++c) {
-        const SoftContact& contact = group.contacts[c];
-        if (rigids[contact.rigid].inverse_mass != 0) continue;
-        const Vector3f impulse = group.whole_impulse(c);
-        const float pressing = group.impulse(c);
-        const float left = contact.friction * pressing - (impulse - pressing * contact.normal).norm();
-        const Vector3f push = contact.a.of(body.pushes);
-        const Vector3f along = push - contact.normal.dot(push) * contact.normal;
-        const float speed = along.norm(), mobility = contact.a.mobility(body.inverse_masses);
-        if (left <= 0 || speed == 0) continue;
-        contact.a.add(body.pushes, body.inverse_masses, -std::min(1 / mobility, left / speed) * along);
-      }
   }
 }
 

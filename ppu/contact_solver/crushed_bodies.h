@@ -11,7 +11,6 @@
 #include "ppu/contact_solver/lost_spin.h"
 #include "ppu/contacts/contact_body.h"
 #include "ppu/contacts/crushed_cells.h"
-#include "ppu/obstacles/contact_rigid.h"
 
 namespace softcell::ppu {
 
@@ -26,13 +25,10 @@ class CrushedBodies {
   /// Whether some of its cells are crushed.
   bool is_crushed(std::size_t body) const { return is_crushed_[body]; }
 
-  /// Sets SoftContact::holds_pushes of crushed bodies' contacts, whoever solves them.
-  void hold_pushes(std::span<ContactGroup> groups) const;
-  /// Cells that get their volume back in a slant push their lower corners one way and their upper ones the other. What the body lies on
-  /// holds it against that by friction, too; a crushed body would crawl over level ground otherwise. Call it when contacts are solved.
-  /// @param groups  those with rigid bodies
-  void hold_pushes_by_friction(std::span<const ContactGroup> groups, std::span<ContactBody> bodies,
-                               std::span<const ContactRigid> rigids) const;
+  /// Tells crushed bodies' contacts of their pushes, whoever solves them (SoftContact::holds_pushes, slide). Cells that get their volume
+  /// back in a slant push their lower corners one way and their upper ones the other, and matching takes that motion back. Friction must
+  /// feel both: it would drive a crushed body over level ground if it felt one of them.
+  void hold_pushes(std::span<ContactGroup> groups, std::span<const ContactBody> bodies) const;
 
   /// Whether add_lost_spin() has anything to add.
   bool change_spin() const { return count_ > 0; }

@@ -63,7 +63,7 @@ void solve_normal(SoftContact& contact, const ContactSides& sides, float step) {
 /// Coulomb's law, the same in all directions.
 void solve_friction(SoftContact& contact, const ContactSides& sides) {
   const Vector3f v = relative_velocity(contact, sides);
-  const Vector3f sliding = v - contact.normal.dot(v) * contact.normal;
+  const Vector3f sliding = v - contact.normal.dot(v) * contact.normal + contact.slide;
   const float speed = sliding.norm();
   const float most = contact.friction * contact.impulse;
   if (most == 0 && contact.friction_impulse.isZero(0)) return;
@@ -98,6 +98,12 @@ spu::SolveAnchor as_kernels_solve_it(const Anchor& anchor, std::span<const float
     result.weight[k] = anchor.share[k] * std::sqrt(inverse_masses[anchor.particle[k]]);
   }
   return result;
+}
+
+/// Makes the push velocity positive, because the kernel ignores contacts that push with 0 m/s.
+void push_at_least_a_bit(spu::SolveContact& contact) {
+  constexpr float kAsGoodAsNothing = 1e-20f;  // m/s
+  contact.push_velocity = std::max(contact.push_velocity, kAsGoodAsNothing);
 }
 
 /// Moves soft bodies only: a rigid one is moved by its engine.
@@ -152,6 +158,7 @@ spu::SolveContact as_kernels_solve_it(const SoftContact& contact, const ContactS
     carried += rigids[contact.rigid].velocity_at(contact.acts_at);
   }
   result.cell_a = cell_of(contact.a);
+  carried -= contact.slide;
   for (int d = 0; d < 3; ++d) {
     result.normal[d] = contact.normal[d];
     result.carried[d] = carried[d];
@@ -161,7 +168,7 @@ spu::SolveContact as_kernels_solve_it(const SoftContact& contact, const ContactS
   result.mass = 1 / mobility;
   result.friction = contact.friction;
   result.push_velocity = push_velocity(contact, sides.a->spacing(), step);
-  if (contact.holds_pushes) hold_pushes(result);
+  if (contact.holds_pushes) push_at_least_a_bit(result);
   return result;
 }
 
@@ -223,10 +230,25 @@ void hold_by_own_cells(spu::SolveContact& contact, const ContactBody& a, const C
   for (int d = 0; d < 3; ++d) contact.carried[d] = carried[d];
 }
 
-/// Makes the push velocity positive, because the kernel ignores contacts that push with 0 m/s.
-void hold_pushes(spu::SolveContact& contact) {
-  constexpr float kAsGoodAsNothing = 1e-20f;  // m/s
-  contact.push_velocity = std::max(contact.push_velocity, kAsGoodAsNothing);
+void hold_pushes(SoftContact& contact, const ContactBody& a, const ContactBody* b) {
+  contact.holds_pushes = true;
+  contact.slide = contact.a.of(a.pushes);
+  if (b != nullptr) contact.slide -= contact.b.of(b->pushes);
+  contact.slide -= contact.normal.dot(contact.slide) * contact.normal;
+}
+
+void hold_pushes(spu::SolveContact& contact, const ContactBody& a, const ContactBody& b) {
+  push_at_least_a_bit(contact);
+  const Vector3f normal(contact.normal);
+  const auto pushed = [](const ContactBody& body, const spu::SolveAnchor& there) -> Vector3f {
+    Vector3f sum = Vector3f::Zero();
+    if (body.asleep) return sum;
+    for (std::size_t k = 0; k < 8; ++k)
+      sum += there.weight[k] * body.model->root_masses[there.particle[k]] * body.pushes[there.particle[k]];
+    return sum;
+  };
+  const Vector3f slide = pushed(a, contact.a) - pushed(b, contact.b);
+  Vector3f::Map(contact.carried) -= slide - normal.dot(slide) * normal;
 }
 
 void iterate(std::span<SoftContact> contacts, const ContactSides& sides, float step) {

@@ -35,6 +35,8 @@ struct SoftContact {
   /// At held particles of body a, which rigid bodies press on: they feel what holds them.
   bool on_held = false;
   bool holds_pushes = false;  ///< a body has pushes of its own; they must not lead into the other one
+  /// m/s: how a moves along b by such pushes. Friction resists the whole motion.
+  Eigen::Vector3f slide{0, 0, 0};
 
   // Results of the solver.
   float impulse = 0;  ///< kg m/s along the normal
@@ -70,8 +72,10 @@ void meet_rigid(spu::SolveContact& solved, const SoftContact& contact, const Con
 /// (ContactModel::held()). @pre nothing has solved it yet
 void hold_by_own_cells(spu::SolveContact& contact, const ContactBody& a, const ContactBody& b);
 
-/// Does what SoftContact::holds_pushes does, for a contact that the kernel contact_find has found.
-void hold_pushes(spu::SolveContact& contact);
+/// Sets SoftContact::holds_pushes and `slide` for the pushes that bodies have now.
+void hold_pushes(SoftContact& contact, const ContactBody& a, const ContactBody* b);
+/// Does the same for a contact that the kernel contact_find has found.
+void hold_pushes(spu::SolveContact& contact, const ContactBody& a, const ContactBody& b);
 
 /// One iteration over all contacts, one after the other (sequential impulses: [Cat05]).
 void iterate(std::span<SoftContact> contacts, const ContactSides& sides, float step);
