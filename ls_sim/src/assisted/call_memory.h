@@ -29,7 +29,6 @@ class CallMemory {
   std::uint32_t word(std::uint32_t lsa) const { return static_cast<std::uint32_t>(value(lsa, 4)); }
   std::uint64_t doubleword(std::uint32_t lsa) const { return value(lsa, 8); }
 
-  void set_byte(std::uint32_t lsa, std::uint8_t value) { set_value(lsa, value, 1); }
   /// @param size  bytes, 1 to 8; of the value as many low ones
   void set_value(std::uint32_t lsa, std::uint64_t value, std::uint32_t size) {
     tell(lsa, size, true);
