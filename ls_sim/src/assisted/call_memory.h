@@ -37,9 +37,9 @@ class CallMemory {
   }
   void set_word(std::uint32_t lsa, std::uint32_t value) { set_value(lsa, value, 4); }
 
-  /// Is told of each range before it is read or written; none wraps around.
+  /// Called with each range before it is read or written. No range wraps around.
   using Listener = std::function<void(std::uint32_t lsa, std::uint32_t bytes, bool is_store)>;
-  /// @param listener  empty: nobody
+  /// @param listener  empty: none
   void set_listener(Listener listener) { listener_ = std::move(listener); }
 
   /// Reads a text up to its terminating zero, at most `most` characters or a whole local store.
