@@ -327,8 +327,6 @@ void deform(const Skin2d& skin, std::span<const Vector2f> particles, std::span<V
       const Pull2d& pull = skin.pulls[k];
       SC_ASSERT(pull.particle < particles.size(), "vertex {} is pulled by particle {} of {}", i,
                 pull.particle, particles.size());
-      SC_ASSERT(pull.particle < particles.size(), "vertex {} is pulled by particle {} of {}", i,
-                pull.particle, particles.size());
       const Vector2f& particle = particles[pull.particle];
       position += pull.share * particle;
       x += pull.along_x * particle;
