@@ -122,8 +122,8 @@ TEST_P(AttachmentMomentum, ARigidBodyFeelsWhatHangsOnIt) {
   EXPECT_NEAR(own.x(), 0.36f, 0.05f) << "it turns with the box";
 }
 
-/// A crate and what hangs on it are put at other places, metres apart. What took back the angular momentum of forces between such ends threw
-/// them about, faster and faster: 1e28 J.
+/// A crate and the body that hangs on it are put metres apart. The code that removes the angular momentum of forces between such ends once
+/// threw them about, faster and faster: up to 1e28 J.
 TEST_P(AttachmentMomentum, EndsThatWerePutFarApartComeTogetherCalmly) {
   for (const AttachmentKind kind : {AttachmentKind::kWeld, AttachmentKind::kHinge})
     for (const float way : {1.0f, 3.0f, 10.0f})
