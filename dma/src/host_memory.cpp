@@ -127,8 +127,8 @@ std::variant<std::byte*, Fault> HostMemory::resolve(EffectiveAddress ea, std::ui
   return reinterpret_cast<std::byte*>(ea.value);
 }
 
-/// What a program has allocated ends for the MFC with the quadword of its last byte: otherwise no legal
-/// command could move that.
+/// Checks that a transfer stays within one block of the program's heap. A block counts up to the end of its last quadword, because
+/// otherwise no legal command could move its last bytes.
 std::optional<Fault> HostMemory::check_allocation(EffectiveAddress ea, std::uint64_t bytes) const {
   const HostAllocations* allocations = allocations_.load(std::memory_order_acquire);
   if (allocations == nullptr || !allocations->owns(ea.value)) return std::nullopt;

@@ -17,7 +17,8 @@
 
 namespace softcell::dma {
 
-/// Any thread. Nobody may write to an SPE while its port is taken away.
+/// Where the local stores and registers of SPEs are in main storage, and their ports. Any thread. No thread may write to an SPE while
+/// set_port() removes its port.
 class LocalStores {
  public:
   /// @param base  of SPE 0; a multiple of kLocalStoreStrideBytes.
@@ -61,7 +62,7 @@ class LocalStores {
   /// @return  a pointer that stands for the register. No value is stored there: on_write() passes it on.
   std::variant<std::byte*, Fault> resolve_register(EffectiveAddress ea, std::uint64_t bytes, bool writes);
 
-  /// Tells the SPE of a write before its bytes arrive, so that nobody sees bytes that were not announced.
+  /// Tells the SPE of a write before its bytes arrive, so that its checker knows of them before its kernel can load them.
   /// @return  whether the write went to a register, which has the value now; then there are no bytes to copy.
   bool on_write(EffectiveAddress ea, const std::byte* from, std::uint32_t bytes);
 

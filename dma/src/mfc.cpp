@@ -236,7 +236,7 @@ std::optional<Fault> Mfc::transfer_at_once(const MfcCommand& command) {
   return std::nullopt;
 }
 
-/// It passes through the queue without a wait.
+/// Counts and reports a command that passes through the queue without a wait.
 void Mfc::begin_at_once(const MfcCommand& command) {
   ++statistics_.queued_commands;
   ++statistics_.occupancy_sum;

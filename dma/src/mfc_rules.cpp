@@ -11,7 +11,7 @@
 namespace softcell::dma {
 namespace {
 
-/// A broken rule before it is known whose it is.
+/// A broken rule, without the command that breaks it.
 struct Breach {
   Rule rule;
   std::string detail;

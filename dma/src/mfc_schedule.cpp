@@ -35,7 +35,7 @@ void Mfc::complete_overdue() {
   };
   for (SlotSet slots; (slots = overdue()) != 0;) finish(queue_.oldest(slots));
 
-  // What waits for a stalled list is late and cannot help it: it is looked at again at the next visit.
+  // Commands that wait for a stalled list may be overdue and cannot complete, so the next visit looks at them again.
   next_due_ = visits_ + kMostVisits;
   for (SlotSet rest = queue_.slots() & static_cast<SlotSet>(~stalled_); rest != 0;
        rest &= static_cast<SlotSet>(rest - 1)) {
@@ -43,8 +43,8 @@ void Mfc::complete_overdue() {
   }
 }
 
-// A loop that polls must come to an end, so under the lazy schedule every fruitless question completes one
-// command, after the answer. The random schedule lets time pass before the answer.
+// A loop that polls must come to an end. So under the lazy schedule each poll without success completes one command after its answer. The
+// random schedule lets time pass before the answer.
 void Mfc::answer_poll(SlotSet wanted) {
   if (schedule_.kind == Schedule::kLazy) progress(wanted);
 }

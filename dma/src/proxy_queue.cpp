@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::uint32_t kStartBit = 0x08;  // of the opcode [CBEA, MFC commands] documented
 
-/// What makes a command one of the SPU's queue only.
+/// Refuses commands that only the SPU itself can issue.
 std::optional<Fault> check_proxy(const MfcCommand& command) {
   const bool is_list = command.kind() == CommandKind::kList;
   if (!is_list && command.kind() != CommandKind::kLine) return std::nullopt;

@@ -155,7 +155,7 @@ struct Reservations::State {
   bool any_reserved(LineRange lines) const;
   void wait_for_long_copies(std::uint64_t line) const;
 
-  /// Runs whole() when nobody has reserved a line of the range and nobody can until it is done.
+  /// Runs whole() if no line of the range is reserved. No line of it can be reserved until whole() has returned.
   /// @return  whether it ran.
   template <class Whole>
   bool copy_at_once(int place, LineRange lines, Whole&& whole) {
@@ -209,8 +209,8 @@ void Reservations::State::leave_place(int place) {
   places_taken.reset(static_cast<std::size_t>(place));
 }
 
-// Takes the lock of the line that was reserved last: a write that ends the reservation tells the listener with that lock held,
-// so the listener hears nothing after this.
+// Takes the lock of the line that was reserved last. A write that ends the reservation calls the listener with that lock held, so the
+// listener is not called after this.
 void Reservations::State::release(int place) {
   Reservation& own = reservations[place];
   if (own.last_line == kNoLine) return;

@@ -225,7 +225,7 @@ class AttachmentLinks {
     return taken;
   }
 
-  // The same, for links that end without the program's doing: take_ended() tells of them. Calls `after(link)` for each.
+  // The same for links that the program does not end itself, which take_ended() returns. Calls `after(link)` for each.
 
   /// @return whether there are any
   template <class Which, class After>

@@ -486,7 +486,8 @@ bool AttachmentRows<kDimension>::pushes_soft_body_only() const {
 /// an arc has gone straight on, and is pushed inwards. What arcs do not explain is left out, as it would drive the bodies.
 template <int kDimension>
 auto AttachmentRows<kDimension>::spin_of_pushes() const -> Axial {
-  constexpr double kMost = 2, kAlike = 0.5;  // of what arcs explain; cosine
+  constexpr double kMost = 2;              // of what arcs explain
+  constexpr double kLeastAlignment = 0.5;  // cosine between the spin and what arcs explain
   using Wide = Eigen::Vector<double, kDimension>;
   using Of = AttachedRigid<kDimension>;
   const AttachedBody<kDimension>& body = sides_.a;
@@ -502,7 +503,8 @@ auto AttachmentRows<kDimension>::spin_of_pushes() const -> Axial {
     of_arcs += turning::cross(arc, (mass * carried).eval());
   }
   const double size = turning::length_of(sum), most = kMost * turning::length_of(of_arcs);
-  if (!(turning::dot(sum, of_arcs) > kAlike * size * turning::length_of(of_arcs))) return Axial(0 * sum);
+  if (!(turning::dot(sum, of_arcs) > kLeastAlignment * size * turning::length_of(of_arcs)))
+    return Axial(0 * sum);
   return size > most ? Axial(most / size * sum) : sum;
 }
 

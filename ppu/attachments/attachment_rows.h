@@ -107,12 +107,14 @@ class AttachmentRows {
   float iterate();
   /// Ends the substep after the last iteration.
   void finish();
-  /// Takes back the angular momentum that an attachment has added by error: if it is compliant its ends are apart, so its two impulses do
-  /// not lie on one line if the ends also move sideways; and particles that follow a rigid body are pushed while they move. It turns the
-  /// patches of soft bodies, no rigid body. Call it after finish() of all attachments, or after a kernel.
-  /// @param agrees  no other attachment of a contradicts this one: those that do push again and again, which would count each time
+  /// Removes the angular momentum that an attachment has added by error. The error has two causes. The ends of a compliant attachment are
+  /// apart, so if they also move sideways, its two impulses do not lie on one line. And particles that follow a rigid body are pushed while
+  /// they move. The function turns the patches of soft bodies, but no rigid body. Call it after finish() of all attachments, or after a
+  /// kernel.
+  /// @param agrees  whether no other attachment of body a contradicts this one. Attachments that contradict each other push again and
+  ///                again, and each push would count
   void take_back_spin(bool agrees);
-  /// Whether the ends were apart at the substep's beginning, as those of attachments are that contradict each other.
+  /// Whether the ends were apart at the substep's beginning, as happens when attachments contradict each other.
   bool is_apart() const;
   bool takes_back_spin() const;
 

@@ -1,19 +1,16 @@
 #include "softcell/soft_bodies/soft_body.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <future>
 #include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
 #include "ppu/bodies/lost_momenta.h"
+#include "ppu/bodies/motion.h"
+#include "ppu/bodies/rest_shape.h"
 #include "ppu/bodies/stillness.h"
-#include "ppu/bodies/workshop.h"
-#include "ppu/matching/plastic_flow.h"
-#include "ppu/matching/rotation.h"
 #include "ppu/matching/stiffness.h"
 #include "ppu/numbers/box_around.h"
 #include "ppu/numbers/turning.h"
@@ -26,7 +23,7 @@ namespace {
 
 using Eigen::Matrix2d;
 using Eigen::Matrix3d;
-using turning::cross, turning::inertia_of, turning::inverse, turning::to_float;
+using turning::cross, turning::inverse, turning::to_float;
 
 Matrix2d matrix_of(const Eigen::Rotation2Df& rotation) { return rotation.cast<double>().toRotationMatrix(); }
 Matrix3d matrix_of(const Eigen::Quaternionf& rotation) {
@@ -46,129 +43,7 @@ void check_values(std::span<const Vector> values, std::size_t particles, const s
       throw std::runtime_error(body + "a " + one + " that is not finite, for particle " + std::to_string(i));
 }
 
-/// Sums over the body in double precision, so that positions far from the origin lose no accuracy.
-template <int kDimension>
-struct Motion {
-  using Vector = Eigen::Vector<double, kDimension>;
-  using Matrix = Eigen::Matrix<double, kDimension, kDimension>;
-
-  Vector centre = Vector::Zero();                        // metres
-  Vector velocity = Vector::Zero();                      // m/s, of the centre
-  turning::Axial<kDimension> spin;                       // kg m^2/s, angular momentum about the centre
-  decltype(inertia_of(std::declval<Matrix>())) inertia;  // kg m^2, about the centre
-};
-
-template <int kDimension>
-Motion<kDimension> motion_of(const SoftBody<kDimension>& body) {
-  using Vector = typename Motion<kDimension>::Vector;
-  const std::span<const float> masses = body.model().masses();
-  Motion<kDimension> motion;
-  double mass = 0;
-  for (std::size_t i = 0; i < masses.size(); ++i) {
-    const double m = masses[i];
-    mass += m;
-    motion.centre += m * body.position(i).template cast<double>();
-    motion.velocity += m * body.velocities()[i].template cast<double>();
-  }
-  SC_ASSERT(mass > 0, "{} particles have a mass of {} kg together", masses.size(), mass);
-  motion.centre /= mass;
-  motion.velocity /= mass;
-
-  typename Motion<kDimension>::Matrix second_moment = Motion<kDimension>::Matrix::Zero();
-  motion.spin = cross(Vector(Vector::Zero()), Vector(Vector::Zero()));
-  for (std::size_t i = 0; i < masses.size(); ++i) {
-    const double m = masses[i];
-    const Vector r = body.position(i).template cast<double>() - motion.centre;
-    const Vector v = body.velocities()[i].template cast<double>();
-    motion.spin += m * cross(r, v);
-    second_moment += m * r * r.transpose();
-  }
-  motion.inertia = inertia_of(second_moment);
-  return motion;
-}
-
-/// The rotation about `centre` by which the undeformed body fits the present one best.
-template <int kDimension>
-typename Motion<kDimension>::Matrix orientation_of(const SoftBody<kDimension>& body,
-                                                   const typename Motion<kDimension>::Vector& centre) {
-  const auto plan = body.plan();
-  const auto rest = plan->particle_constants();
-  SC_ASSERT(rest.size() == body.positions().size(), "{} particles at rest, {} in the body", rest.size(),
-            body.positions().size());
-  typename Motion<kDimension>::Matrix correlation = Motion<kDimension>::Matrix::Zero();
-  for (std::size_t i = 0; i < rest.size(); ++i) {
-    const double m = body.model().masses()[i];
-    correlation += m * (body.position(i).template cast<double>() - centre) *
-                   rest[i].x0.template cast<double>().transpose();
-  }
-  return nearest_rotation(correlation);
-}
-
-/// The thread on which the rest shapes of all bodies flow. A body that yields flows after each look, and the result is needed only in the
-/// next step.
-Workshop& flows() {
-  static Workshop workshop(Workshop::Start::kByClock);
-  return workshop;
-}
-
 }  // namespace
-
-/// The additional data of a plastic body: null until the body is first looked at. `shape` is null until the body has yielded.
-//
-//     flow()   look   take   2   3   look   take ...     the result is taken kFlowSteps calls later, or is waited for:
-//     flows()  [ a flow ]            [ a flow ]           so it does not depend on how fast that thread is
-//
-template <int kDimension>
-struct SoftBody<kDimension>::RestShape {
-  using Exact = Eigen::Matrix<double, kDimension, 1>;
-
-  /// A rest shape after yielding. Immutable, as copies of a body share it.
-  struct Shape {
-    MatchingPlan<float, kDimension> plan;
-    std::vector<Vector> positions;  // metres
-  };
-
-  explicit RestShape(const SoftBodyModel<kDimension>& model) : RestShape(model, positions_of(model)) {}
-  RestShape(const SoftBodyModel<kDimension>& model, std::span<const Exact> rest)
-      : flow(std::make_shared<PlasticFlow<kDimension>>(model.rest_lattice(), rest)) {}
-  RestShape(const RestShape& other)
-      : flow((other.wait(), std::make_shared<PlasticFlow<kDimension>>(*other.flow))),
-        shape(other.shape),
-        next(other.next),
-        is_flowing(other.is_flowing) {}
-
-  static std::vector<Exact> positions_of(const SoftBodyModel<kDimension>& model) {
-    std::vector<Exact> positions;
-    for (std::size_t i = 0; i < model.particles(); ++i)
-      positions.push_back(model.lattice().rest_position(i).template cast<double>());
-    return positions;
-  }
-  static std::shared_ptr<const Shape> shape_of(const PlasticFlow<kDimension>& flow,
-                                               MatchingPlan<float, kDimension> plan) {
-    plan.set_rest(flow.rest());
-    std::vector<Vector> positions;
-    for (const auto& particle : plan.particle_constants())
-      positions.push_back(plan.rest_centre() + particle.x0);
-    return std::make_shared<const Shape>(Shape{std::move(plan), std::move(positions)});
-  }
-  /// Returns when a flow that was begun has a result.
-  void wait() const {
-    if (!next.valid() || next.wait_for(std::chrono::seconds(0)) == std::future_status::ready) return;
-    flows().hurry();
-    next.wait();
-  }
-
-  // flows() uses these two while `next` is not ready.
-  std::shared_ptr<PlasticFlow<kDimension>> flow;
-  std::shared_ptr<std::vector<Vector>> seen = std::make_shared<std::vector<Vector>>();  // positions, metres
-
-  std::shared_ptr<const Shape> shape;  // null: the model's
-  // Result of a flow that was begun; null: the shape has not changed.
-  std::shared_future<std::shared_ptr<const Shape>> next;
-  // The last result was a new shape. Whether it goes on flowing is found out by flows().
-  bool is_flowing = false;
-  std::shared_ptr<const Shape> worn;  // the previous shape: flows() destroys it with the next flow
-};
 
 template <int kDimension>
 SoftBody<kDimension>::SoftBody(std::shared_ptr<const SoftBodyModel<kDimension>> model, const Vector& position)
@@ -197,7 +72,7 @@ SoftBody<kDimension>::SoftBody(const SoftBody& other)
       resets_(other.resets_),
       rest_revision_(other.rest_revision_),
       asleep_(other.asleep_) {
-  if (other.rest_) set_rest(std::make_unique<RestShape>(*other.rest_));
+  if (other.rest_) set_rest(std::make_unique<RestShape<kDimension>>(*other.rest_));
   steps_since_look_ = other.steps_since_look_;
 }
 
@@ -211,7 +86,7 @@ SoftBody<kDimension>& SoftBody<kDimension>::operator=(const SoftBody& other) {
   padded_ = other.padded_;
   *matcher_ = *other.matcher_;
   *lost_ = *other.lost_;
-  set_rest(other.rest_ ? std::make_unique<RestShape>(*other.rest_) : nullptr);
+  set_rest(other.rest_ ? std::make_unique<RestShape<kDimension>>(*other.rest_) : nullptr);
   steps_since_look_ = other.steps_since_look_;
   asleep_ = other.asleep_;
   // A change by the user: couplings must notice it, whatever the other body's counts are.
@@ -284,7 +159,7 @@ void SoftBody<kDimension>::forget_rotations() {
 }
 
 template <int kDimension>
-void SoftBody<kDimension>::set_rest(std::unique_ptr<RestShape> rest) {
+void SoftBody<kDimension>::set_rest(std::unique_ptr<RestShape<kDimension>> rest) {
   const bool had_own = has_own_rest();
   steps_since_look_ = 0;
   rest_ = std::move(rest);
@@ -293,13 +168,12 @@ void SoftBody<kDimension>::set_rest(std::unique_ptr<RestShape> rest) {
 
 template <int kDimension>
 bool SoftBody<kDimension>::has_own_rest() const {
-  return rest_ != nullptr && rest_->shape != nullptr;
+  return rest_ != nullptr && rest_->is_own();
 }
 
 template <int kDimension>
 auto SoftBody<kDimension>::plan() const -> std::shared_ptr<const MatchingPlan<float, kDimension>> {
-  if (has_own_rest()) return {rest_->shape, &rest_->shape->plan};
-  return model_->plan();
+  return has_own_rest() ? rest_->plan() : model_->plan();
 }
 
 template <int kDimension>
@@ -312,15 +186,14 @@ auto SoftBody<kDimension>::rest_positions() const -> std::vector<Vector> {
 
 template <int kDimension>
 auto SoftBody<kDimension>::own_rest() const -> std::span<const Vector> {
-  if (!has_own_rest()) return {};
-  return rest_->shape->positions;
+  return has_own_rest() ? rest_->positions() : std::span<const Vector>();
 }
 
 template <int kDimension>
 void SoftBody<kDimension>::set_rest_positions(std::span<const Vector> rest) {
   check_values(rest, x_.size(), "position at rest", "positions at rest");
-  std::unique_ptr<RestShape> own = rest_of(rest);
-  if (const std::size_t bad = own->flow->cells_that_contacts_hold())
+  auto own = std::make_unique<RestShape<kDimension>>(*model_, rest);
+  if (const std::size_t bad = own->cells_that_contacts_hold())
     throw std::runtime_error("in a soft body's rest shape " + base::counted(bad, "cell") + " of " +
                              std::to_string(model_->lattice().cells.size()) + (bad == 1 ? " is" : " are") +
                              " flat, inside out, or smaller than half of the cell in the model; contacts "
@@ -329,22 +202,15 @@ void SoftBody<kDimension>::set_rest_positions(std::span<const Vector> rest) {
 }
 
 template <int kDimension>
-auto SoftBody<kDimension>::rest_of(std::span<const Vector> positions) const -> std::unique_ptr<RestShape> {
-  std::vector<Eigen::Matrix<double, kDimension, 1>> exact;
-  for (const Vector& position : positions) exact.push_back(position.template cast<double>());
-  return std::make_unique<RestShape>(*model_, exact);
-}
-
-template <int kDimension>
-void SoftBody<kDimension>::adopt_rest(std::unique_ptr<RestShape> rest) {
-  rest->shape = RestShape::shape_of(*rest->flow, *model_->plan());
+void SoftBody<kDimension>::adopt_rest(std::unique_ptr<RestShape<kDimension>> rest) {
+  rest->adopt(*model_->plan());
   set_rest(std::move(rest));
   ++revision_;
 }
 
 template <int kDimension>
 bool SoftBody<kDimension>::will_look() const {
-  return settings_.plasticity && steps_since_look_ + 1 >= kPlasticSteps && !(rest_ && rest_->is_flowing);
+  return settings_.plasticity && steps_since_look_ + 1 >= kPlasticSteps && !(rest_ && rest_->is_flowing());
 }
 
 template <int kDimension>
@@ -355,49 +221,23 @@ void SoftBody<kDimension>::flow(float step, std::optional<float> stretch) {
   if (rest_ && steps_since_look_ >= kFlowSteps) read_flow();
   if (steps_since_look_ < kPlasticSteps) return;
   steps_since_look_ = 0;
-  if (!rest_) rest_ = std::make_unique<RestShape>(*model_);
+  if (!rest_) rest_ = std::make_unique<RestShape<kDimension>>(*model_);
   const Plasticity& plasticity = *settings_.plasticity;
-  // The thread that flows does the close look if this thread need not.
-  bool looked = false;
-  if (!rest_->is_flowing) {
-    std::optional<bool> yields = stretch ? rest_->flow->may_yield(*stretch, plasticity.yield) : std::nullopt;
-    looked = !yields;
-    if (looked) yields = rest_->flow->may_yield(x_, plasticity.yield);
-    if (!*yields) return;
-  }
   // The body has moved on when the flow is done: a larger share would make it oscillate in some cases.
   constexpr double kMost = 0.7;
   const double share = std::min(kMost, damping_from_time_constant(1 / static_cast<double>(plasticity.creep),
                                                                   kPlasticSteps * static_cast<double>(step)));
-  // Memory that another thread frees comes back with new pages each time, which costs this thread more than the copy.
-  rest_->seen->assign(x_.begin(), x_.end());
-  using Shape = std::shared_ptr<const typename RestShape::Shape>;
-  rest_->next = flows().begin([flow = rest_->flow, seen = rest_->seen, plan = plan(), plasticity, share,
-                               looked, worn = std::move(rest_->worn)]() -> Shape {
-    if (!looked && !flow->may_yield(*seen, plasticity.yield)) return nullptr;
-    if (!flow->flow(*seen, plan->sums(), plasticity, share)) return nullptr;
-    return RestShape::shape_of(*flow, *plan);
-  });
+  rest_->look(x_, stretch, plasticity, share, plan());
 }
 
 /// Updates the constants of shape matching to the rest shape.
 template <int kDimension>
 void SoftBody<kDimension>::read_flow() {
-  SC_ASSERT(rest_ != nullptr, "a body of {} particles was never looked at", x_.size());
-  if (!rest_->next.valid()) return;
-  rest_->wait();
-  std::shared_ptr<const typename RestShape::Shape> flowed = std::exchange(rest_->next, {}).get();
-  rest_->is_flowing = flowed != nullptr;
-  rest_->worn = nullptr;
-  if (!flowed) return;
-  if (!rest_->flow->takes_energy(x_)) {
-    rest_->flow->take_back();
-    rest_->worn = flowed;
-    // Looks that keep time with a swing would come to this again and again.
-    ++steps_since_look_;
-    return;
-  }
-  rest_->worn = std::exchange(rest_->shape, flowed);
+  using Taken = typename RestShape<kDimension>::Taken;
+  const Taken taken = rest_->take(x_);
+  // Looks that keep time with a swing would come to the same refusal again and again.
+  if (taken == Taken::kRefused) ++steps_since_look_;
+  if (taken != Taken::kNewShape) return;
   matcher_->set_plan(plan());
   ++rest_revision_;
 }
@@ -419,7 +259,7 @@ void SoftBody<kDimension>::inherit_state(const SoftBody& whole, std::span<const 
   if (!whole.has_own_rest()) return;
   std::vector<Vector> rest;
   for (const std::uint32_t particle : particle_of) rest.push_back(whole.own_rest()[particle]);
-  adopt_rest(rest_of(rest));
+  adopt_rest(std::make_unique<RestShape<kDimension>>(*model_, rest));
 }
 
 template <int kDimension>

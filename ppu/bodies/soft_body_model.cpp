@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -65,9 +64,8 @@ std::string place_text(const Eigen::Vector<float, kDimension>& place) {
 }
 
 template <int kDimension>
-std::vector<float> strengths_of(
-    const Lattice<kDimension>& lattice,
-    const std::function<float(const Eigen::Vector<float, kDimension>&)>& strength) {
+std::vector<float> strengths_of(const Lattice<kDimension>& lattice,
+                                const StrengthField<kDimension>& strength) {
   std::vector<float> strengths;
   for (std::size_t c = 0; strength && c < lattice.cells.size(); ++c) {
     const Eigen::Vector<float, kDimension> middle =
@@ -157,7 +155,7 @@ template class SoftBodyModel<3>;
 struct SoftBodyModelMaker {
   static std::shared_ptr<const SoftBodyModel<3>> make(Lattice<3> lattice, Embedding embedding,
                                                       const SoftBodySettings& settings,
-                                                      std::vector<float> strengths = {}) {
+                                                      std::vector<float> strengths) {
     std::shared_ptr<SoftBodyModel<3>> model(
         new SoftBodyModel<3>(std::move(lattice), std::make_shared<const Embedding>(std::move(embedding)),
                              settings, SoftBodyModel<3>::kContactRadiusInCells));
@@ -193,7 +191,7 @@ struct SoftBodyModelMaker {
   }
   static std::shared_ptr<const SoftBodyModel<2>> make(Lattice<2> lattice, const SoftBodySettings& settings,
                                                       float contact_radius_in_cells,
-                                                      std::vector<float> strengths = {}) {
+                                                      std::vector<float> strengths) {
     std::shared_ptr<SoftBodyModel<2>> model(
         new SoftBodyModel<2>(std::move(lattice), nullptr, settings, contact_radius_in_cells));
     model->strengths_ = std::move(strengths);
@@ -227,12 +225,12 @@ std::shared_ptr<const SoftBodyModel<2>> make_piece_model(
 
 std::shared_ptr<const SoftBodyModel<3>> make_soft_body_model(const TriangleMesh& mesh,
                                                              const SoftBodySettings& settings) {
-  return make_soft_body_model(mesh, settings, StrengthField());
+  return make_soft_body_model(mesh, settings, StrengthField<3>());
 }
 
 std::shared_ptr<const SoftBodyModel<3>> make_soft_body_model(const TriangleMesh& mesh,
                                                              const SoftBodySettings& settings,
-                                                             const StrengthField& strength) {
+                                                             const StrengthField<3>& strength) {
   validate(settings);
   validate(mesh);
   Lattice<3> lattice = voxelize(mesh, settings.cell_size);
@@ -243,21 +241,28 @@ std::shared_ptr<const SoftBodyModel<3>> make_soft_body_model(const TriangleMesh&
 
 std::shared_ptr<const SoftBodyModel<3>> make_soft_body_model(Lattice<3> lattice,
                                                              const SoftBodySettings& settings) {
+  return make_soft_body_model(std::move(lattice), settings, StrengthField<3>());
+}
+
+std::shared_ptr<const SoftBodyModel<3>> make_soft_body_model(Lattice<3> lattice,
+                                                             const SoftBodySettings& settings,
+                                                             const StrengthField<3>& strength) {
   validate(settings);
   check_cell_size(settings, lattice.spacing);
-  return SoftBodyModelMaker::make(std::move(lattice), {}, settings);
+  std::vector<float> strengths = strengths_of<3>(lattice, strength);
+  return SoftBodyModelMaker::make(std::move(lattice), {}, settings, std::move(strengths));
 }
 
 std::shared_ptr<const SoftBodyModel<2>> make_soft_body_model(Lattice<2> lattice,
                                                              const SoftBodySettings& settings,
                                                              float contact_radius_in_cells) {
-  return make_soft_body_model(std::move(lattice), settings, contact_radius_in_cells, StrengthField2d());
+  return make_soft_body_model(std::move(lattice), settings, contact_radius_in_cells, StrengthField<2>());
 }
 
 std::shared_ptr<const SoftBodyModel<2>> make_soft_body_model(Lattice<2> lattice,
                                                              const SoftBodySettings& settings,
                                                              float contact_radius_in_cells,
-                                                             const StrengthField2d& strength) {
+                                                             const StrengthField<2>& strength) {
   validate(settings);
   check_cell_size(settings, lattice.spacing);
   if (!(contact_radius_in_cells > 0 && contact_radius_in_cells <= 1)) {

@@ -1,5 +1,8 @@
 #include "softcell/soft_bodies/soft_body_solver.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "softcell/base/assert.h"
 
 namespace softcell::ppu {
@@ -8,6 +11,8 @@ template <int kDimension>
 void PpuSolver<kDimension>::kick(std::span<SoftBody<kDimension>* const> bodies, float step) {
   SC_ASSERT(bodies_.empty(), "kick() of {} bodies while a step of {} is under way", bodies.size(),
             bodies_.size());
+  SC_ASSERT(step > 0 && std::isfinite(step), "a time step of {} s", step);
+  SC_ASSERT(std::ranges::find(bodies, nullptr) == bodies.end(), "one of {} bodies is null", bodies.size());
   bodies_.assign(bodies.begin(), bodies.end());
   step_ = step;
 }

@@ -16,8 +16,6 @@ std::uint64_t hash_of(std::span<const Position> positions, std::span<const Veloc
   return XXH3_64bits_withSeed(v.data(), v.size(), after_x);
 }
 
-}  // namespace
-
 /// Adds the rest shape of bodies that have yielded; all others keep the hash of an elastic body.
 template <int kDimension>
 std::uint64_t with_rest_shape(const SoftBody<kDimension>& body, std::uint64_t hash) {
@@ -25,6 +23,8 @@ std::uint64_t with_rest_shape(const SoftBody<kDimension>& body, std::uint64_t ha
   const auto rest = body.rest_positions();
   return XXH3_64bits_withSeed(rest.data(), rest.size() * sizeof(rest[0]), hash);
 }
+
+}  // namespace
 
 // Vectors have no padding, or a fourth float that is always 0.
 std::uint64_t state_hash(const SoftBody<3>& body, std::uint64_t before) {

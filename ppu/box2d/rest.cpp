@@ -29,7 +29,7 @@ bool Rest::rests(const b2Body& body, const SleepSettings& settings) const {
   return is_slow && world_.GetAllowSleeping() && body.IsSleepingAllowed();
 }
 
-/// A body that already sleeps, or never moves, keeps nobody awake.
+/// Adds a body to the group, unless it sleeps or never moves: such a body keeps no other awake.
 void Rest::add(b2Body& body) {
   if (Box2dBody* const soft = soft_body_of_(body))
     add(*soft);

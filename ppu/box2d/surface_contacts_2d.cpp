@@ -122,7 +122,7 @@ void SurfaceContacts2d::begin(Bodies bodies, const Box2dAttachments& attachments
   }
 }
 
-/// Whether the world no longer has the body, or the body has changed for those that touch it. Box2D does not tell soft bodies of it.
+/// Whether the world no longer has the body, or the body looks different to what touches it. Box2D has no callback for that.
 bool SurfaceContacts2d::is_gone(const Support& support) {
   return !obstacles_.has(support.body) || obstacles_.look(*support.body) != support.look;
 }
@@ -133,8 +133,8 @@ void SurfaceContacts2d::see(Kept& kept, b2Body& body) {
     kept.seen.push_back(as_it_is(body));
 }
 
-/// Wakes a sleeper if a body beside it has begun to move, or what it lies on is gone or has moved. In the latter case it tells those on it:
-/// a support that moves slowly, such as a lift, moves nobody so fast that others would wake.
+/// Wakes a sleeper if a body beside it has begun to move, or if what it lies on is gone or has moved. In the second case it also wakes the
+/// bodies that lie on the sleeper, because a slow support, such as a lift, does not move the sleeper fast enough to wake them.
 void SurfaceContacts2d::wake_if_disturbed(Kept& kept, Box2dBody& body, const BodyInSubstep& in_substep) {
   const auto moves_there = [&](std::uint32_t obstacle) {
     b2Body& beside = *obstacles_.bodies()[obstacles_.obstacles()[obstacle].rigid];

@@ -90,8 +90,8 @@ class SurfaceContacts2d {
   void follow_pieces(const Box2dBody& body, const SoftBodyModel<2>& whole, std::span<const Piece> pieces);
   /// Follows bodies and the world to another origin. @param by  metres, which all positions have just been moved by
   void shift(const Eigen::Vector2f& by);
-  /// Tells that a body has gone or has another model now. Frees what is kept of a model that no body has any longer, if it is a piece's or
-  /// nobody else holds the model: now, or in a step soon.
+  /// Call it when a body has gone or has another model now. Frees the data of a model that no body has any longer, now or in a step soon,
+  /// if it is the model of a piece or nothing else holds it.
   /// @param model  that the body had; need not exist any longer  @pre between steps
   void forget_model(const SoftBodyModel<2>* model) { models_.forget(model); }
 

@@ -61,7 +61,8 @@ void SurfaceContacts::wake_if_disturbed(std::span<SurfaceBody* const> bodies, st
   }
 }
 
-/// Wakes sleepers on bodies whose support has changed, and those on these: a lift may be so slow that nobody on it wakes others by moving.
+/// Wakes sleepers that lie on bodies whose support has changed, directly or through others. A lift may be so slow that the bodies on it do
+/// not move fast enough to wake each other.
 void SurfaceContacts::wake_those_on_shaken(std::span<SurfaceBody* const> bodies) {
   for (std::size_t i = 0; i < shaken_.size(); ++i) {
     const SurfaceBody& shaken = *bodies[shaken_[i]];
@@ -194,8 +195,8 @@ void SurfaceContacts::wake_those_in_the_way(std::span<SurfaceBody* const> bodies
   }
 }
 
-/// A body that was added after the last substep has no island and waits. Attached bodies fall asleep with those that they are attached to,
-/// but may keep their island awake.
+/// A body that was added after the last substep has no island yet and stays awake. Attached bodies fall asleep in attachments_.let_sleep();
+/// here they only keep their island awake if they are restless.
 void SurfaceContacts::let_sleep(std::span<SurfaceBody* const> bodies, const SleepSettings& sleep) {
   is_restless_.assign(islands_.numbers(), false);
   for (const SurfaceBody* const body : bodies)

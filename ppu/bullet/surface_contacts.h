@@ -35,8 +35,8 @@ class SurfaceContacts {
       const std::shared_ptr<const SoftBodyModel<3>>& model);
   /// Keeps a model that was made elsewhere, as if contact_model() had made it.
   void adopt(std::unique_ptr<ContactModel> contact);
-  /// Tells that a body has gone or has another model now. Frees what is kept of a model that no body has any longer, if it is a piece's or
-  /// nobody else holds the model: now, or in a substep soon.
+  /// Call it when a body has gone or has another model now. Frees the data of a model that no body has any longer, now or in a substep
+  /// soon, if it is the model of a piece or nothing else holds it.
   /// @param model  that the body had; need not exist any longer  @pre between substeps
   void forget_model(const SoftBodyModel<3>* model) { models_.forget(model); }
 

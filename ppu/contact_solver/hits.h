@@ -1,6 +1,6 @@
 #pragma once
-// Chooses the contacts that are hits: those that bounce (bounces.h). Two bodies that pressed on each other in the last substep do not hit
-// each other: their relative motion is deformation.
+// Chooses the contacts that are hits, which bounce (bounces.h). Two bodies that pressed on each other in the last substep do not hit each
+// other, because their relative motion is deformation.
 
 #include <array>
 #include <cstdint>

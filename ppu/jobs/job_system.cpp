@@ -406,8 +406,8 @@ JobImage JobSystem::load(const ls_sim::KernelImage& image) {
   if (placed == state_->images.end()) {
     require_job(image, state_->loop, state_->wants_checked);
     // Whole quadwords, which a get can move.
-    dma::Buffer<std::byte> bytes(state_->memory, "image " + image.name, (image.bytes.size() + 15) / 16 * 16,
-                                 kRead);
+    dma::Buffer<std::byte> bytes(state_->memory, "image " + image.name,
+                                 dma::round_up_to_quadword(image.bytes.size()), kRead);
     std::memcpy(bytes.data(), image.bytes.data(), image.bytes.size());
     state_->group.register_job_image(bytes.ea(), image);
     placed = state_->images.insert(placed, {&image, std::move(bytes)});

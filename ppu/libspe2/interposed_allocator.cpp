@@ -73,7 +73,7 @@ struct Block {
 using Blocks =
     std::map<std::uint64_t, Block, std::less<>, PageAllocator<std::pair<const std::uint64_t, Block>>>;
 
-/// The blocks of the program, by address; those that were freed stay until others take their place.
+/// The blocks of the program, by address. Freed blocks stay until new ones take their place.
 struct Heap {
   std::mutex mutex;                  // guards all below but the generation
   std::atomic<pthread_t> forking{};  // the thread that is in fork(), which holds the mutex there

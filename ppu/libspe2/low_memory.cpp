@@ -48,13 +48,13 @@ void* map(void* place, std::size_t bytes, int protection, int flags, int file, o
 
 /// Pages below 4 GB. @return  MAP_FAILED with errno set
 void* map_low(std::size_t bytes, int protection, int flags, int file, off_t offset) {
-  static std::atomic<std::uintptr_t> lowest{kSearchEnd};  ///< of those that were given out
+  static std::atomic<std::uintptr_t> lowest{kSearchEnd};  ///< of all pages that this function has returned
   const std::size_t room = (bytes + kSearchStep - 1) / kSearchStep * kSearchStep;
   if (room == 0 || room > kSearchEnd - kSearchBegin) {
     errno = ENOMEM;
     return MAP_FAILED;
   }
-  // Below all others first, then in what has become free since.
+  // Searches below all of these first, then everywhere, for pages that have become free.
   for (const std::uintptr_t from : {lowest.load(), kSearchEnd}) {
     for (std::uintptr_t at = from - room; at >= kSearchBegin && at < from; at -= kSearchStep) {
       void* const place = reinterpret_cast<void*>(at);
@@ -74,7 +74,7 @@ void* map_low(std::size_t bytes, int protection, int flags, int file, off_t offs
 
 std::size_t round_up_to_page(std::size_t bytes) { return (bytes + kPageBytes - 1) / kPageBytes * kPageBytes; }
 
-/// A stack, with a page below it that nobody may touch. @return  MAP_FAILED
+/// A stack with an inaccessible page below it. @return  MAP_FAILED: there is no room
 void* map_stack(std::size_t bytes) {
   void* const stack =
       map_low(bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_STACK | MAP_NORESERVE, -1, 0);
@@ -109,8 +109,8 @@ int is_program_fixed(dl_phdr_info* program, std::size_t, void* fixed) {
 
 // ---- stacks of threads
 
-/// A stack that threads have one after another. The C library keeps what it knows of a thread on the thread's stack:
-/// another may have it when the thread was joined, or has ended and nobody may join it.
+/// A stack that threads use one after another. The C library keeps its data of a thread on the thread's stack, so the next thread gets the
+/// stack only when the thread was joined, or has ended and is detached.
 struct Stack {
   void* begin = nullptr;
   std::size_t bytes = 0;
@@ -131,7 +131,7 @@ struct Stacks {
     return *made;
   }
 
-  /// One that nobody uses any longer, or a new one. @return  null: there is no room
+  /// A stack that is no longer used, or a new one. @return  null: there is no room
   Stack* take(std::size_t bytes) {
     const std::lock_guard lock(mutex);
     for (Stack& stack : all) {
@@ -168,7 +168,7 @@ struct Stacks {
   Stack* of(pthread_t thread) {
     const std::lock_guard lock(mutex);
     for (Stack& stack : all) {
-      // A thread lies on its stack, also one that has not begun.
+      // The C library's data of a thread, to which pthread_t points, lie on its stack, also before the thread begins.
       const auto begin = reinterpret_cast<std::uintptr_t>(stack.begin),
                  at = static_cast<std::uintptr_t>(thread);
       if (stack.taken && !stack.detached && at >= begin && at < begin + stack.bytes) return &stack;

@@ -41,7 +41,7 @@ class Machine {
   [[noreturn]] void end_process(int status);
   /// Whether the end of the process ends all runs.
   bool is_ending() const { return ending_thread_ != 0; }
-  /// Does not return when the process ends: as on the Cell, its threads hear nothing more of their SPEs.
+  /// Does not return if the process ends. As on the Cell, the last calls of its threads have no results.
   void stay_if_ending() const;
   /// For the process's last moments. Only the first call has an effect; another thread's does not return.
   static void at_exit();
@@ -53,7 +53,7 @@ class Machine {
   /// Call it when a run has ended, after report(). It brings the report up to date with what was found: a program may end
   /// without its exit handlers, by _exit() or a signal.
   void end_run();
-  /// Adds the transfers of a context that is about to be destroyed to the statistics. One that has stopped does not go on.
+  /// Adds the transfers of a context that is about to be destroyed to the statistics. A context that has stopped makes no more transfers.
   void count_last(ls_sim::SpeContext& context);
 
  private:

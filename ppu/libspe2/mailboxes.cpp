@@ -61,7 +61,7 @@ int spe_in_mbox_write(spe_context_ptr_t spe, unsigned int* mbox_data, int count,
   const auto work = [&](spe_context& context) {
     if (mbox_data == nullptr || count < 1 || !is_behavior(behavior)) return fail(EINVAL);
     const auto write = [&](int index) {
-      const std::lock_guard lock(context.in_mbox);  // between the question and the write nobody else writes
+      const std::lock_guard lock(context.in_mbox);  // so that no other thread takes the free entry
       if (context.spe->state().in_mbox_free == 0) return false;
       context.problem_state().write_in_mbox(mbox_data[index]);
       return true;

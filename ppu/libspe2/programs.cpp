@@ -174,7 +174,7 @@ std::shared_ptr<const KernelImage> program_in_file(const std::string& path, std:
   const std::string name = program_name(path);
   if (offset >= bytes->size())
     throw std::runtime_error(path + " has no SPE program at byte " + std::to_string(offset));
-  // The whole file is looked at once as what it is; afterwards its header is trusted.
+  // Loads it once to check it by the size of the file. Later loads trust the header.
   static_cast<void>(ls_sim::load_image(name, std::span(*bytes).subspan(offset)));
   std::optional<Bytes> checked;
   if (Machine::get().settings().checked && offset == 0) checked = read_file(checked_file(path).c_str());
@@ -196,7 +196,7 @@ spe_program_handle_t* spe_image_open(const char* filename) {
       if (auto checked = read_file(checked_file(filename).c_str()))
         program->checked_bytes = std::move(*checked);
     }
-    // The whole file is looked at once as what it is; afterwards its header is trusted.
+    // Loads it once to check it by the size of the file. Later loads trust the header.
     try {
       static_cast<void>(softcell::ls_sim::load_image(program->name, program->bytes));
       if (!program->checked_bytes.empty())

@@ -114,7 +114,7 @@ void complain_of_call(std::uint32_t callnum) {
                          : ", for which spe_callback_handler_register() has registered no handler"));
 }
 
-/// Calls the PPU side as long as the program asks for it.
+/// Serves the calls of the PPU side by which the program stops.
 /// @return  the first stop that is no call, or the failure of a call.
 Outcome answer_calls(spe_context& context, ContextStop& stop, bool callbacks) {
   for (;;) {

@@ -292,7 +292,7 @@ void PlasticFlow<kDimension>::keep_volume() {
   for (std::size_t l = 0; l < d_.size(); ++l) flow_[l] -= trace[l] / kDimension * d_[l];
 }
 
-/// The shape whose edges are nearest to those that have flowed, scaled to the same volume.
+/// The shape whose edges are nearest to the edges after the flow, scaled to the same volume.
 template <int kDimension>
 auto PlasticFlow<kDimension>::new_shape() const -> std::vector<Exact> {
   const auto edges = lattice_->edges();

@@ -13,7 +13,8 @@ inline constexpr std::uint32_t kMaxRegionMembers = 64u << 20;  ///< of all regio
 /// material. Membership is symmetric: i is in list r exactly when r is in list i.
 /// @param neighbours  of each particle, as Lattice has them.
 /// @param half_width  0..kMaxHalfWidth; 0 makes every particle a region of its own.
-/// @throws std::runtime_error  half width out of range, or more than kMaxRegionMembers entries.
+/// @throws std::runtime_error  half width out of range, or more than kMaxRegionMembers entries; far more are refused before memory is
+///         allocated for them.
 /// @source  [LSM07]
 Csr find_regions(const Csr& neighbours, int half_width);
 inline Csr find_regions(const Lattice<3>& lattice, int half_width) {

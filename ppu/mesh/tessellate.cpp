@@ -60,7 +60,7 @@ class EdgeHalver {
   }
   bool is_too_long(std::uint32_t a, std::uint32_t b) const { return squared_length(a, b) > longest_; }
 
-  /// The vertex in the middle of an edge: of each edge one, whichever of its triangles asks first.
+  /// The vertex in the middle of an edge, the same for all triangles at the edge.
   std::uint32_t middle(std::uint32_t a, std::uint32_t b) {
     const auto [low, high] = std::minmax(a, b);
     const auto [found, is_new] =

@@ -95,7 +95,7 @@ class GltfImport {
 
   void add_not_read(const std::string& phrase) { ppu::add_not_read(not_read_, phrase); }
 
-  /// The nodes that the scene consists of; without a scene those that are no children.
+  /// The nodes of the scene; if the file has no scene, all nodes without a parent.
   std::vector<std::uint32_t> roots() const {
     std::vector<std::uint32_t> found;
     const std::size_t nodes = root_.size("nodes"), scenes = root_.size("scenes");

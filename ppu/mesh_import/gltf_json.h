@@ -1,6 +1,6 @@
 #pragma once
-// The JSON of a glTF file: read by nlohmann/json without what nobody here reads, and looked into by functions whose
-// complaints name the place in the file.
+// The JSON of a glTF file. nlohmann/json parses it, without the parts that softcell does not read. The functions here return its values;
+// their errors name the place in the file.
 
 #include <cstddef>
 #include <cstdint>

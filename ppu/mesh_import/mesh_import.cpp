@@ -51,8 +51,7 @@ const char* extension_of(MeshFormat format) {
   return "";
 }
 
-/// All of the library's world: one file, in memory. Whatever the file refers to (materials, pictures) does
-/// not exist.
+/// The file system that the library sees: one file, in memory. Other files to which it refers (materials, pictures) do not exist there.
 class SingleFile : public Assimp::IOSystem {
  public:
   SingleFile(std::string name, std::string_view bytes) : name_(std::move(name)), bytes_(bytes) {}

@@ -13,7 +13,7 @@ namespace softcell::ppu {
 
 /// @param read_neighbour  finds the files that this one names; null: materials have no pictures, those of an OBJ file
 /// names only
-/// @param not_read  as ImportReport's; null: nobody asks
+/// @param not_read  as ImportReport's; may be null
 /// @throws std::runtime_error  a clause that says what is wrong with the file, without its name.
 TriangleMesh parse_mesh(std::string_view bytes, MeshFormat format,
                         const ReadNeighbour& read_neighbour = nullptr,

@@ -1,5 +1,5 @@
 #pragma once
-// binary16 numbers ("half floats"): conversion from and to float, exact, in integer arithmetic.
+// binary16 numbers ("half floats"): conversion from float, rounded to the nearest, in integer arithmetic.
 
 #include <bit>
 #include <cstdint>
@@ -27,16 +27,6 @@ constexpr std::uint16_t half_from_float(float value) {
     half = (fraction + (1u << (shift - 1)) - 1u + ((fraction >> shift) & 1u)) >> shift;
   }
   return static_cast<std::uint16_t>(sign | half);
-}
-
-/// The same value as a float.
-constexpr float float_from_half(std::uint16_t half) {
-  const std::uint32_t sign = (half & 0x8000u) << 16;
-  const std::uint32_t exponent = (half >> 10) & 31u, fraction = half & 0x3FFu;
-  if (exponent == 31u) return std::bit_cast<float>(sign | 0x7F800000u | (fraction << 13));
-  if (exponent != 0) return std::bit_cast<float>(sign | ((exponent + 112u) << 23) | (fraction << 13));
-  const float magnitude = static_cast<float>(fraction) * 0x1p-24f;
-  return sign != 0 ? -magnitude : magnitude;
 }
 
 }  // namespace softcell::ppu

@@ -15,8 +15,8 @@ using Eigen::Vector3f;
 
 constexpr float kFastest = 100;       // m/s
 constexpr float kLeastCosine = 0.5f;  // of the angle of a turn
-// A body that has not moved for longer than this has come to rest: nobody knows how many substeps a frame has now, and it is taken to have
-// kUnknownFrame.
+// Substeps. A body that has not moved for longer than kLongestFrame has come to rest. When it moves again, the number of substeps in a
+// frame is not known; kUnknownFrame stands for it.
 constexpr int kLongestFrame = 32, kUnknownFrame = 4;
 
 Matrix3f turn_between(const Pose& from, const Pose& to) { return to.rotation * from.rotation.transpose(); }

@@ -35,7 +35,7 @@ struct ObstacleEdge {
   float radius_at(float share) const { return radius_from + share * (radius_to - radius_from); }
 };
 
-/// Whoever made the obstacle owns the lists.
+/// A rigid shape as contacts see it. Its maker owns the lists to which the spans refer.
 struct Obstacle {
   ObstacleKind kind = ObstacleKind::kPlane;
   std::uint32_t rigid = 0;  ///< index of its ContactRigid

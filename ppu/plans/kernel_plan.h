@@ -29,8 +29,8 @@ class BodyTooLarge : public std::runtime_error {
 template <typename Header>
 class KernelPlan {
  public:
-  /// Sums start anew at every kRestart-th place of the lattice, so that rounding errors stay those of a short
-  /// row and a tile of a large lattice that begins at such a place has the same bits.
+  /// Running sums start anew at every kRestart-th place of the lattice. So rounding errors are no larger than those of a short row, and a
+  /// tile of a large lattice that begins at such a place gives the same bits.
   static constexpr int kRestart = 16;
 
   const Header& header() const {
@@ -47,7 +47,7 @@ class KernelPlan {
   /// Particle -> the place of its region in the plan: group number / 4, lane number % 4.
   std::span<const std::uint32_t> region_of() const { return region_of_; }
 
-  /// Additions and subtractions of slots that one sum up takes.
+  /// How many slots are added or subtracted to compute all sums once.
   std::size_t additions() const { return additions_; }
 
  protected:

@@ -64,8 +64,8 @@ class MatchBodies {
   void reset(std::size_t body);
   /// Copies the rotations of one of `other`'s bodies. @pre both have the same plan
   void take_rotations(std::size_t body, const MatchBodies& other, std::size_t other_body);
-  /// The rotations of a body, valid as long as this object. (A template, as Clang 14 instantiates other members with a class, whatever they
-  /// require.)
+  /// The rotations of a body, valid as long as this object. It is a template because Clang 14 instantiates members that are none together
+  /// with their class, even if their `requires` is false.
   template <int kOwn = kDimension>
   RegionRotations region_rotations(std::size_t body) requires(kOwn == 3) {
     return {rotations(body), region_of_, result(body).cold};

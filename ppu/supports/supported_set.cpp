@@ -114,7 +114,7 @@ bool SupportedSet::hold(std::span<const Press> presses, float step) {
   return true;
 }
 
-/// Velocities of members if loads use up all that motors have: such a motor holds nothing more.
+/// Sets the velocities that members have if loads use up the whole force of motors, which then hold nothing more.
 void SupportedSet::spend() {
   for (std::size_t i = 0; i < standing_.size(); ++i) links_.members()[i].now = standing_[i].velocity;
   if (spent_.empty()) return;

@@ -15,11 +15,13 @@ inline std::uint64_t key_of(const Eigen::Vector3i& index) {
   return part(index.x()) << 42 | part(index.y()) << 21 | part(index.z());
 }
 
+/// Chooses the points at which a surface touches other things: closer together where the surface bends. Used by one thread.
 class PointChooser {
  public:
   // In cells.
   static constexpr float kPointSpacing = 0.45f;  ///< between points of a smooth surface
-  static constexpr float kSamePoint = 0.1f;  ///< nearer than this two points are one, whatever their normals
+  static constexpr float kSamePoint =
+      0.1f;  ///< two points nearer than this count as one, also with different normals
   /// Where the surface bends: how far a point may stand out beyond one that is already chosen. It is half of their distance times the angle
   /// between their normals.
   static constexpr float kBulge = 0.06f;

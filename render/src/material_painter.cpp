@@ -44,8 +44,8 @@ uniform sampler2D normal_texture;
 uniform sampler2D emission_texture;
 out vec4 result;
 
-// The texture's directions on the surface as it is deformed at this moment: from the change of position and texture
-// coordinates across the pixel. So no vertex has a tangent, and whoever skins the mesh need not know of them.
+// The texture's directions on the surface as it is deformed now, from the change of position and texture coordinates
+// across the pixel. So vertices need no tangents, and skinning need not compute them.
 vec3 mapped_normal(vec3 n) {
   vec3 across = dFdx(position), down = dFdy(position);
   vec2 texture_across = dFdx(texture_position), texture_down = dFdy(texture_position);

@@ -59,6 +59,8 @@ void* Overlay::sheet() {
 void Overlay::make_current() { ImGui::SetCurrentContext(context_); }
 
 OverlayFont Overlay::font() const {
+  SC_ASSERT(ImGui::GetCurrentContext() == context_,
+            "the font of the overlay at {}, which is not the current one", static_cast<const void*>(this));
   const ImFontAtlas& atlas = *ImGui::GetIO().Fonts;
   const auto size = static_cast<std::size_t>(atlas.TexWidth) * static_cast<std::size_t>(atlas.TexHeight);
   return {atlas.TexWidth, atlas.TexHeight, {atlas.TexPixelsAlpha8, size}};

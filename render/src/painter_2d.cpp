@@ -320,7 +320,7 @@ void Painter2d::add_stretch(const Vector2f& from, const Vector2f& to, float radi
   const float length = (to - from).norm();
   const Vector2f along = length > 0 ? Vector2f((to - from) / length) : Vector2f(1, 0);
   const Vector2f across(-along.y(), along.x());
-  // In pixels: beyond its ends the stretch goes on, and what lies there is as far from it as from the end.
+  // Distances from the stretch, in pixels. A point beyond an end is as far from the stretch as from this end.
   const float reach = radius + kSmooth, cap = reach / pixels;
   const auto corner = [&](const Vector2f& end, float beyond, float side) {
     return StrokeVertex{

@@ -159,7 +159,7 @@ void PostProcess::State::make_drawn() {
     } else {
       gl.TexImage2D(drawn_kind, 0, static_cast<GLint>(format), settings.width, settings.height, 0, channels,
                     type, nullptr);
-      // Between colours one looks along edges; between depths nobody does.
+      // Smoothing along edges reads between colours. Depths are read at texels only.
       const GLint filter = attachment == GL_COLOR_ATTACHMENT0 ? GL_LINEAR : GL_NEAREST;
       gl.TexParameteri(drawn_kind, GL_TEXTURE_MIN_FILTER, filter);
       gl.TexParameteri(drawn_kind, GL_TEXTURE_MAG_FILTER, filter);

@@ -30,9 +30,9 @@ class PostProcess {
   /// The finished picture, one sample a pixel.
   GLuint picture() const;
 
-  /// Makes the picture anew of what was drawn where `part` is, and around it as far as occlusion reaches. It changes the bound
+  /// Makes `part` of the picture anew from what was drawn, and its surroundings as far as occlusion reaches. Changes the bound
   /// framebuffer, program, vertex array and textures, the viewport and the scissor.
-  /// @pre part is within the picture; what is outside of it is as in the last call
+  /// @pre part is within the picture; nothing outside of it was drawn differently since the last call
   void run(const PixelRect& part, bool with_occlusion);
 
   /// Pixels from which a point of a picture is occluded, at most: occlusion.z of shaders.h. @param height  of the picture

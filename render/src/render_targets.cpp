@@ -37,11 +37,11 @@ void RenderTargets::require_drawable(int side) const {
 
 void RenderTargets::resize(int width, int height) {
   const auto refuse = [&](const std::string& what) {
-    gl_.GetError();  // which the context would keep for whoever asks next
+    gl_.GetError();  // clears the error, which the context would keep
     throw std::runtime_error(description_ + ": " + what + " of " + std::to_string(width) + " by " +
                              std::to_string(height) + " pixels");
   };
-  gl_.GetError();  // of whoever had the context before: no fault of this size
+  gl_.GetError();  // clears an error of earlier calls
   PictureBuffers made;
   try {
     made.frame =

@@ -87,8 +87,8 @@ std::vector<std::string> encoding(VideoFormat format) {
       return in_bt709({"-c:v", "libvpx-vp9", "-crf", "22", "-b:v", "0", "-deadline", "good", "-cpu-used", "5",
                        "-f", "webm"});
     case VideoFormat::kGif:
-      // A palette for each frame: one for all would need all frames in memory. Ordered dither, so that what stands
-      // still stays still. No differences between frames: they would be of numbers, whatever the palettes.
+      // A palette for each frame, because one for all would need all frames in memory. Ordered dither, so that parts that do not
+      // move do not flicker. No differences between frames: they would compare numbers of colours in different palettes.
       return {"-filter_complex",
               "format=rgb24,split[frames][same];[frames]palettegen=stats_mode=single[palettes];"
               "[same][palettes]paletteuse=new=1:dither=bayer:bayer_scale=4",

@@ -11,10 +11,10 @@
 #include <string>
 #include <vector>
 
-#include "ppu/numbers/half.h"
 #include "ppu/reference/skin_scalar.h"
 #include "scene_file/scene_library.h"
 #include "simulation/simulation_3d.h"
+#include "support/float_from_half.h"
 #include "support/slow_build.h"
 
 namespace softcell::demos {

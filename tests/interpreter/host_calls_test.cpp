@@ -41,8 +41,7 @@ class HostCallsTest : public testing::Test {
   }
   std::uint32_t text(const std::string& value) {
     const std::uint32_t at = next_text_;
-    memory_.set_bytes(at, value);
-    memory_.set_byte(at + static_cast<std::uint32_t>(value.size()), 0);
+    memory_.set_bytes(at, value + '\0');
     next_text_ += static_cast<std::uint32_t>(value.size()) + 1;
     return at;
   }

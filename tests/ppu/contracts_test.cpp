@@ -134,6 +134,17 @@ TEST(SoftBodyContractsDeathTest, ASolverDoesOneStepAtATime) {
   solver.forget(body);  // the step that failed has ended
 }
 
+TEST(SoftBodyContractsDeathTest, ASolverStepsBodiesForATimeAboveZero) {
+  SoftBody<3> body(cube());
+  const std::array<SoftBody<3>*, 1> bodies{&body};
+  const std::array<SoftBody<3>*, 2> with_none{&body, nullptr};
+  PpuSolver<3> solver;
+  SC_EXPECT_VIOLATES(solver.kick(bodies, 0), "kick.*: a time step of 0 s\n");
+  SC_EXPECT_VIOLATES(solver.kick(bodies, std::numeric_limits<float>::infinity()),
+                     "kick.*: a time step of inf s\n");
+  SC_EXPECT_VIOLATES(solver.kick(with_none, 0.01f), "kick.*: one of 2 bodies is null\n");
+}
+
 TEST(SoftBodyContractsDeathTest, ASkinIsPulledByParticlesOfItsBody) {
   const std::array<Eigen::Vector2i, 1> cells{Eigen::Vector2i(0, 0)};
   const Lattice<2> lattice = lattice_from_cells(cells, 0.1f);

@@ -15,6 +15,7 @@
 #include "ppu/reference/skin_scalar.h"
 #include "softcell/mesh_import/mesh_import.h"
 #include "softcell/soft_bodies/shapes.h"
+#include "support/float_from_half.h"
 
 namespace softcell::ppu {
 namespace {

@@ -5,6 +5,8 @@
 #include <bit>
 #include <cmath>
 
+#include "support/float_from_half.h"
+
 namespace softcell::ppu {
 namespace {
 

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "ppu/fracture/cracks.h"
 #include "ppu/lattice/embedding.h"
 #include "soft_body_scenes.h"
 #include "softcell/soft_bodies/shapes.h"
@@ -146,6 +147,20 @@ SoftBody<3> moving_body() {
     body.set_particle(i, x, body.velocities()[i]);
   }
   return body;
+}
+
+/// The face between two cells is as strong as the weaker one.
+TEST(SoftBodyModel, TakesStrengthsOfALatticeAloneInBothDimensions) {
+  SoftBodySettings settings{.cell_size = 0.5f};
+  settings.fracture = Fracture{};
+  const std::vector<Eigen::Vector3i> cubes{{0, 0, 0}, {1, 0, 0}};
+  const auto solid = make_soft_body_model(lattice_from_cells(cubes, 0.5f, {2, 0, 0}), settings,
+                                          [](const Vector3f& at) { return at.x(); });
+  EXPECT_EQ(solid->cracks().strength, std::vector<float>{2.25f});
+  const std::vector<Eigen::Vector2i> squares{{0, 0}, {1, 0}};
+  const auto flat = make_soft_body_model(lattice_from_cells(squares, 0.5f, {2, 0}), settings, 0.5f,
+                                         [](const Eigen::Vector2f& at) { return at.x(); });
+  EXPECT_EQ(flat->cracks().strength, std::vector<float>{2.25f});
 }
 
 TEST(SoftBodyModel, SaysWhereAStrengthIsRefusedAndInAllItsDigits) {

@@ -11,7 +11,6 @@
 #include <thread>
 #include <vector>
 
-#include "ppu/numbers/half.h"
 #include "soft_body_scenes.h"
 #include "softcell/box2d/box2d_soft_bodies.h"
 #include "softcell/dma/buffer.h"
@@ -22,6 +21,7 @@
 #include "softcell/spe_bodies/spe_skinner.h"
 #include "softcell/spe_bodies/spe_solver.h"
 #include "spu_kernels/kernel_image.h"
+#include "support/float_from_half.h"
 
 namespace softcell::ppu {
 namespace {

@@ -40,6 +40,12 @@ TEST(RenderContractsDeathTest, PicturesThatAreSubtractedHaveOneSize) {
   SC_EXPECT_VIOLATES(difference_image(Image(4, 3), Image(3, 4)), "4 by 3 pixels and 3 by 4\n");
 }
 
+TEST(RenderContractsDeathTest, AFontIsThatOfTheCurrentOverlay) {
+  const Overlay first, second;
+  SC_EXPECT_VIOLATES(static_cast<void>(first.font()),
+                     "font.*: the font of the overlay at .*, which is not the current one\n");
+}
+
 TEST(RenderContractsDeathTest, AFontHasASize) { SC_EXPECT_VIOLATES(Overlay(0), "a font scaled by 0\n"); }
 
 }  // namespace

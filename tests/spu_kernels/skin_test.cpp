@@ -13,7 +13,6 @@
 #include <string>
 #include <vector>
 
-#include "ppu/numbers/half.h"
 #include "ppu/reference/skin_scalar.h"
 #include "ppu/spe_bodies/job_records.h"
 #include "ppu/spe_bodies/skin_orchestrator.h"
@@ -23,6 +22,7 @@
 #include "softcell/soft_bodies/lattice.h"
 #include "softcell/soft_bodies/shapes.h"
 #include "spu_kernels/kernel_image.h"
+#include "support/float_from_half.h"
 
 namespace softcell {
 namespace {

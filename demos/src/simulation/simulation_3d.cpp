@@ -9,8 +9,6 @@
 #include <stdexcept>
 #include <string>
 
-#include <fmt/format.h>
-
 #include "beginning_of.h"
 #include "contact_images.h"
 #include "cut_bodies.h"
@@ -22,6 +20,7 @@
 #include "input/script_player.h"
 #include "pins.h"
 #include "ppu/bullet/bullet_world.h"
+#include "rigid_bodies_3d.h"
 #include "scene/shared_models.h"
 #include "scene_bodies.h"
 #include "shown_ropes.h"
@@ -36,8 +35,7 @@
 namespace softcell::demos {
 namespace {
 
-constexpr float kOpaque = 0.5f;  // opacity from which walls hide what is behind them
-constexpr float kReach = 1000;   // metres: beyond any scene
+constexpr float kReach = 1000;  // metres: beyond any scene
 
 double milliseconds_since(std::chrono::steady_clock::time_point begin) {
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
@@ -60,6 +58,12 @@ void twist(ppu::SoftBody<3>& body, float rate) {
     const float turn = rate * r.x() / (box.high.x() - box.low.x());
     body.add_particle_velocity(i, turn * Eigen::Vector3f::UnitX().cross(r));
   }
+}
+
+/// Whether a rigid body hides what is behind it. Obstacles do. @param number  at most bodies.size(), which stands for an obstacle
+bool is_opaque(const RigidBodies3d& bodies, std::size_t number) {
+  constexpr float kOpaque = 0.5f;
+  return number == bodies.size() || bodies.opacity(number) >= kOpaque;
 }
 
 /// Whether the events put bodies elsewhere even if no time passes.
@@ -103,28 +107,14 @@ struct Simulation3d::State {
         jobs(memory, options.spe_options(), job_loop),
         solver(make_solver(options.solver)),
         contacts(options.contacts.value_or(scene.contacts)),
-        soft_bodies(world.world(), *solver, contacts, make_contact_worker(options)) {
+        soft_bodies(world.world(), *solver, contacts, make_contact_worker(options)),
+        rigid_bodies(scene, world) {
     if (scene.sleep) soft_bodies.let_sleep(ppu::SleepSettings{});
     if (options.skin == Skin::kSpe) {
       skin = options.kernel("skin");
       snapshots.skin_on_spes(memory, jobs, *skin);
     }
     SC_ASSERT(scene.substeps > 0, "{} substeps in a frame of scene '{}'", scene.substeps, scene.name);
-    for (const RigidBox& box : scene.boxes) {
-      boxes.push_back(
-          world.add_box(box.size, box.mass, box.position, scene.friction, scene.restitution, box.rotation));
-    }
-    for (const RigidBody& body : scene.rigid_bodies) add_rigid(body);
-    for (const Joint& joint : scene.joints) {
-      world.add_hinge({.a = boxes[scene.boxes.size() + joint.a],
-                       .b = boxes[scene.boxes.size() + joint.b],
-                       .point = joint.point,
-                       .axis = joint.axis,
-                       .speed = joint.speed,
-                       .torque = joint.torque});
-    }
-    for (const Obstacle& obstacle : scene.obstacles)
-      world.add_convex(obstacle.mesh, obstacle.position, scene.friction, scene.restitution);
     scene_bodies = SceneBodies<3>(models_of(scene.soft_bodies));
     for (std::size_t i = 0; i < scene_bodies.size(); ++i) {
       const SoftBodyPlacement& placement = scene.soft_bodies[i];
@@ -154,60 +144,10 @@ struct Simulation3d::State {
     return made;
   }
 
-  void add_rigid(const RigidBody& body) {
-    std::vector<ppu::RigidShape> shapes;
-    for (const RigidPart& part : body.parts) shapes.push_back(part.shape);
-    const Placement start =
-        body.motion ? placement_at(body, 0) : Placement{.position = body.position, .rotation = body.rotation};
-    boxes.push_back(world.add_body(shapes, {.mass = body.mass,
-                                            .position = start.position,
-                                            .rotation = start.rotation,
-                                            .friction = body.friction.value_or(scene.friction),
-                                            .restitution = scene.restitution,
-                                            .is_moved = body.motion.has_value()}));
-  }
-
-  /// Calls `place(its number in the world, position, rotation)` for each body that the scene moves. @param time  seconds
-  template <class Place>
-  void for_each_moved(double time, const Place& place) const {
-    for (std::size_t i = 0; i < scene.rigid_bodies.size(); ++i) {
-      if (!scene.rigid_bodies[i].motion) continue;
-      const Placement at = placement_at(scene.rigid_bodies[i], time);
-      place(boxes[scene.boxes.size() + i], at.position, at.rotation);
-    }
-  }
-
-  /// The mass of one of `boxes`, kg.
-  float mass_of(std::size_t box) const {
-    return box < scene.boxes.size() ? scene.boxes[box].mass
-                                    : scene.rigid_bodies[box - scene.boxes.size()].mass;
-  }
-  /// @param number  in the world
-  std::string name_of_rigid(std::size_t number) const {
-    const auto box = static_cast<std::size_t>(std::ranges::find(boxes, number) - boxes.begin());
-    const auto walls = std::ranges::count_if(scene.boxes, &RigidBox::wall);
-    const std::size_t of_framework = walls > 0 ? static_cast<std::size_t>(walls) + 1 : 0;
-    if (box < of_framework) return scene.boxes[box].wall ? "a wall" : "the floor";
-    if (box < scene.boxes.size()) return fmt::format("box {}", box - of_framework + 1);
-    if (box < boxes.size()) return scene.rigid_bodies[box - scene.boxes.size()].name;
-    return "an obstacle";
-  }
-  float opacity_of(std::size_t box) const {
-    return box < scene.boxes.size() ? scene.boxes[box].opacity
-                                    : scene.rigid_bodies[box - scene.boxes.size()].opacity;
-  }
-
-  /// The one of `boxes` to which a soft body is attached, if it is attached to a rigid body.
-  std::optional<std::size_t> rigid_of(const AttachmentPlacement<3>& placement) const {
-    if (placement.rigid) return scene.boxes.size() + *placement.rigid;
-    return placement.box;
-  }
-
   /// Makes all attachments that the scene states, also those that have broken.
   void attach() {
     attachments = make_attachments<3>(scene, soft_bodies, [&](const AttachmentPlacement<3>& placement) {
-      const auto rigid = rigid_of(placement);
-      return rigid ? &world.rigid_body(boxes[*rigid]) : nullptr;
+      return rigid_bodies.of_attachment(placement);
     });
   }
 
@@ -227,22 +167,9 @@ struct Simulation3d::State {
     frame = scene.begin ? 60 * scene.begin->seconds : 0;
     if (!scene.begin) return;
     tilt = present_tilt();
-    for_each_moved(scene.begin->seconds, [&](auto body, const auto& position, const auto& rotation) {
-      world.teleport(body, position, rotation);
-    });
+    rigid_bodies.put_to(scene.begin->seconds);
     set_beginnings<3>(scene, soft_bodies);
-    std::size_t moving = 0;
-    for (std::size_t i = 0; i < world.rigid_bodies(); ++i) moving += world.moves(i) ? 1 : 0;
-    check_moving_bodies(scene, moving);
-    for (const Beginning<3>::RigidBody& rigid : scene.begin->rigid_bodies) {
-      if (rigid.body >= world.rigid_bodies() || !world.moves(rigid.body))
-        throw std::runtime_error(fmt::format("rigid body {} of the saved state does not move in the scene {}",
-                                             rigid.body, scene.name));
-      world.teleport(rigid.body, {.position = rigid.position,
-                                  .rotation = rigid.rotation,
-                                  .velocity = rigid.velocity,
-                                  .angular_velocity = rigid.angular_velocity});
-    }
+    rigid_bodies.set_beginning();
     end_attachments(scene, attachments, soft_bodies);
     pins.replace(soft_bodies, scene.begin->pins);
   }
@@ -255,19 +182,10 @@ struct Simulation3d::State {
                      .frames = script_frame,
                      .seconds = frame / 60,
                      .soft_bodies = {},
-                     .rigid_bodies = {},
+                     .rigid_bodies = rigid_bodies.state(),
                      .ended_attachments = ended_attachments(attachments, soft_bodies),
                      .pins = pins.saved(soft_bodies)};
     for (std::size_t b = 0; b < soft_bodies.size(); ++b) now.soft_bodies.push_back(state_of(soft_bodies[b]));
-    for (std::uint32_t i = 0; i < world.rigid_bodies(); ++i) {
-      if (!world.moves(i)) continue;
-      const ppu::BulletWorld::Motion motion = world.motion(i);
-      now.rigid_bodies.push_back({.body = i,
-                                  .position = motion.position,
-                                  .rotation = motion.rotation,
-                                  .velocity = motion.velocity,
-                                  .angular_velocity = motion.angular_velocity});
-    }
     return now;
   }
 
@@ -275,8 +193,8 @@ struct Simulation3d::State {
   /// previous frame is drawn.
   void hand_over() {
     Snapshot3d& next = snapshots.next();
-    next.box_poses.resize(boxes.size());
-    for (std::size_t i = 0; i < boxes.size(); ++i) next.box_poses[i] = world.pose(boxes[i]);
+    next.box_poses.resize(rigid_bodies.size());
+    for (std::size_t i = 0; i < rigid_bodies.size(); ++i) next.box_poses[i] = rigid_bodies.pose(i);
     next.tilt = tilt;
     copy_contacts(next);
     copy_hands(next);
@@ -343,8 +261,8 @@ struct Simulation3d::State {
       held.hold(event.hand, std::make_unique<SurfaceGrip>(soft_bodies[nearest->body], event.value));
   }
   void hold_rigid(const InputEvent<3>& event) {
-    if (event.body < boxes.size() && mass_of(event.body) > 0)
-      held.hold(event.hand, std::make_unique<RigidGrip>(world.rigid_body(boxes[event.body]), event.value));
+    if (event.body < rigid_bodies.size() && rigid_bodies.mass(event.body) > 0)
+      held.hold(event.hand, std::make_unique<RigidGrip>(rigid_bodies.bullet_body(event.body), event.value));
   }
   void set_material(const InputEvent<3>& event, std::size_t body) {
     scene_bodies.set_material(soft_bodies, event, body, substep());
@@ -378,9 +296,7 @@ struct Simulation3d::State {
     ppu::StepTimes times;
     for (int number = 0; number < substeps; ++number) {
       const double end_of_substep = frame / 60 - double{step} * (substeps - number - 1);
-      for_each_moved(end_of_substep, [&](auto body, const auto& position, const auto& rotation) {
-        world.move_to(body, position, rotation);
-      });
+      rigid_bodies.move_to(end_of_substep);
       held.pull(number, substeps, gravity, step);
       const ppu::StepTimes of_substep = world.step(step, 1);
       times.physics_ms += of_substep.physics_ms;
@@ -416,7 +332,6 @@ struct Simulation3d::State {
   ScriptPlayer<3> script;
   Controls<3> controls;
   ppu::BulletWorld world;
-  std::vector<std::size_t> boxes;  // numbers in the world
 
   const ls_sim::Timing* timing;  // null: nothing is timed
   dma::AddressSpace memory;
@@ -428,6 +343,7 @@ struct Simulation3d::State {
   std::unique_ptr<ppu::SoftBodySolver<3>> solver;
   const ppu::ContactMethod contacts;
   ppu::BulletSoftBodies soft_bodies;
+  RigidBodies3d rigid_bodies;
   std::vector<ppu::AttachmentId> attachments;  // of the scene, in order
   Snapshots3d snapshots;
   SceneBodies<3> scene_bodies;  // of `soft_bodies`
@@ -522,12 +438,7 @@ std::size_t Simulation3d::vertices() const { return state_->snapshots.vertices()
 
 Skin Simulation3d::skin() const { return state_->snapshots.skins_on_spes() ? Skin::kSpe : Skin::kGpu; }
 
-std::size_t Simulation3d::rigid_bodies() const {
-  std::size_t count = 0;
-  for (std::size_t box = 0; box < state_->boxes.size(); ++box)
-    if (state_->mass_of(box) > 0) ++count;
-  return count;
-}
+std::size_t Simulation3d::rigid_bodies() const { return state_->rigid_bodies.with_mass(); }
 
 const ppu::SoftBodyModel<3>& Simulation3d::model(std::size_t body) const {
   SC_ASSERT(body < soft_bodies(), "body {} of {}", body, soft_bodies());
@@ -585,6 +496,7 @@ void Simulation3d::show(Shown3d& to) const {
 
 std::optional<InputEvent<3>> Simulation3d::touch(const Ray& ray) const {
   SC_ASSERT(std::abs(ray.along.norm() - 1) < 1e-3f, "a ray along a direction {} long", ray.along.norm());
+  const RigidBodies3d& rigid = state_->rigid_bodies;
   const Eigen::Vector3f end = ray.from + kReach * ray.along;
   std::optional<InputEvent<3>> touched;
   float share = 1;
@@ -596,16 +508,17 @@ std::optional<InputEvent<3>> Simulation3d::touch(const Ray& ray) const {
   }
   for (const ppu::BulletWorld::RayHit& hit : state_->world.cast_ray(ray.from, end)) {
     if (hit.share >= share) break;
-    const auto box =
-        static_cast<std::uint32_t>(std::ranges::find(state_->boxes, hit.body) - state_->boxes.begin());
-    if (box < state_->boxes.size() && state_->mass_of(box) > 0)
-      return InputEvent<3>{.action = Action::kHoldRigid, .body = box, .value = hit.position};
-    if (box == state_->boxes.size() || state_->opacity_of(box) >= kOpaque) return std::nullopt;
+    const std::size_t number = rigid.number_of(hit.body);
+    if (number < rigid.size() && rigid.mass(number) > 0)
+      return InputEvent<3>{
+          .action = Action::kHoldRigid, .body = static_cast<std::uint32_t>(number), .value = hit.position};
+    if (is_opaque(rigid, number)) return std::nullopt;
   }
   return touched;
 }
 
 std::optional<Eigen::Vector3f> Simulation3d::seen_along(const Ray& ray) const {
+  const RigidBodies3d& rigid = state_->rigid_bodies;
   const Eigen::Vector3f end = ray.from + kReach * ray.along;
   std::optional<Eigen::Vector3f> seen;
   float share = 1;
@@ -613,9 +526,7 @@ std::optional<Eigen::Vector3f> Simulation3d::seen_along(const Ray& ray) const {
     seen = soft->hit.position, share = soft->hit.share;
   for (const ppu::BulletWorld::RayHit& hit : state_->world.cast_ray(ray.from, end)) {
     if (hit.share >= share) break;
-    const auto box =
-        static_cast<std::size_t>(std::ranges::find(state_->boxes, hit.body) - state_->boxes.begin());
-    if (box == state_->boxes.size() || state_->opacity_of(box) >= kOpaque) return hit.position;
+    if (is_opaque(rigid, rigid.number_of(hit.body))) return hit.position;
   }
   return seen;
 }
@@ -641,7 +552,7 @@ std::string Simulation3d::name_of(const ppu::Contact::Body& body) const {
     return soft_body(b).model().is_piece() ? "a piece of " + name : name;
   }
   for (std::size_t i = 0; i < s.world.rigid_bodies(); ++i)
-    if (&s.world.rigid_body(i) == body.object) return s.name_of_rigid(i);
+    if (&s.world.rigid_body(i) == body.object) return s.rigid_bodies.name_of(i);
   return "a body that is gone";
 }
 

@@ -421,7 +421,7 @@ AssistedCalls::Result AssistedCalls::posix(std::uint32_t function) {
     case kUnlink:
       return of_host(files_.remove(memory_.text(argument(0))));
     case kAccess: {
-      // What may be opened so may be accessed so.
+      // A file that can be opened in this way may be accessed in this way.
       const bool writes = (argument(1) & W_OK) != 0;
       const int descriptor = files_.open(memory_.text(argument(0)), writes ? O_WRONLY : O_RDONLY, 0);
       if (descriptor < 0) return {-1, errno};

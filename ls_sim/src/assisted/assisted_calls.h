@@ -90,7 +90,7 @@ class AssistedCalls {
         memory_(local_store, kind == CallerKind::kSpu ? std::endian::big : std::endian::little),
         kind_(kind) {}
 
-  /// Is told of what calls read and write in the local store. Empty: nobody.
+  /// Sets a function that is called for each range of the local store before a call reads or writes it; empty: none.
   void set_listener(CallMemory::Listener listener) { memory_.set_listener(std::move(listener)); }
 
   /// Serves the call and writes its result over its first argument: the value in word 0, errno in word 3.
@@ -109,7 +109,7 @@ class AssistedCalls {
   std::uint32_t argument(int number) const {
     return memory_.word(arguments_ + static_cast<std::uint32_t>(number) * dma::kQuadwordBytes);
   }
-  /// What a function of the host has returned: below 0 is an error, and errno says which.
+  /// The result of a function of the host. A value below 0 is an error, whose number is errno.
   static Result of_host(std::int64_t value);
 
   Result c99(std::uint32_t function);

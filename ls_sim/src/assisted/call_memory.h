@@ -29,7 +29,6 @@ class CallMemory {
   std::uint32_t word(std::uint32_t lsa) const { return static_cast<std::uint32_t>(value(lsa, 4)); }
   std::uint64_t doubleword(std::uint32_t lsa) const { return value(lsa, 8); }
 
-  void set_byte(std::uint32_t lsa, std::uint8_t value) { set_value(lsa, value, 1); }
   /// @param size  bytes, 1 to 8; of the value as many low ones
   void set_value(std::uint32_t lsa, std::uint64_t value, std::uint32_t size) {
     tell(lsa, size, true);
@@ -38,9 +37,9 @@ class CallMemory {
   }
   void set_word(std::uint32_t lsa, std::uint32_t value) { set_value(lsa, value, 4); }
 
-  /// Is told of each range before it is read or written; none wraps around.
+  /// Called with each range before it is read or written. No range wraps around.
   using Listener = std::function<void(std::uint32_t lsa, std::uint32_t bytes, bool is_store)>;
-  /// @param listener  empty: nobody
+  /// @param listener  empty: none
   void set_listener(Listener listener) { listener_ = std::move(listener); }
 
   /// Reads a text up to its terminating zero, at most `most` characters or a whole local store.

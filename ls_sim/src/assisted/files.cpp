@@ -78,12 +78,12 @@ Stream Files::stream(std::uint32_t handle) {
   return nullptr;
 }
 
-/// What is still in its buffer is written here, so that an error is the caller's.
+/// Writes the rest of the buffer now, so that the program gets the error if that fails.
 int Files::close_stream(std::uint32_t handle) {
   const Stream closed = stream(handle);
   if (closed == nullptr) return EOF;
   const int result = std::fflush(closed.get());
-  if (handle < kFirstHandle) return result;  // the process goes on to use it
+  if (handle < kFirstHandle) return result;  // a standard stream, which the process goes on to use
   const std::lock_guard lock(mutex_);
   streams_[handle - kFirstHandle] = nullptr;
   return result;

@@ -56,10 +56,10 @@ class Files {
   std::vector<Stream> streams_;  ///< by handle less kFirstHandle; null is free
 };
 
-/// All that this process may open: for kernels that are part of it. Numbers of descriptors are those of the process.
+/// All files that this process may open, for kernels built for the host. Numbers of descriptors are those of the process.
 Files& files_of_process();
 
-/// Those in the folder of HostCalls, and its three streams: for one program that is interpreted.
+/// The files in the folder of HostCalls, and its three streams, for one program that is interpreted.
 class FilesInFolder final : public Files {
  public:
   /// @param calls  outlives this.

@@ -26,8 +26,9 @@ bool is_long_long(const std::string& length);
 /// The size in bytes of an integer whose conversion has this length modifier.
 std::uint32_t integer_bytes(const std::string& length);
 
-/// What printf makes of them, cut at 2^20 characters. `l`, `z` and `t` are 32 bits, `ll` and `j` 64, `L` is a double, `%p` shows a
-/// local-store address, `%ls` and `%lc` write UTF-8, and what is no conversion is copied as it stands. `%n` writes to `memory`.
+/// The text that printf makes of a format and its arguments, cut at 2^20 characters. `l`, `z` and `t` are 32 bits, `ll` and `j` 64,
+/// `L` is a double. `%p` shows a local-store address, `%ls` and `%lc` write UTF-8, `%n` writes to `memory`. Invalid conversions are
+/// copied as text.
 /// [C17, 7.21.6.1]
 std::string format_text(const std::string& format, FormatArguments& arguments, CallMemory& memory);
 

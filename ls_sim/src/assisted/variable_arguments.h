@@ -10,11 +10,11 @@
 
 namespace softcell::ls_sim::assisted {
 
-/// A quadword each. [SPU ABI, va_list] documented
+/// The arguments of a program built for the SPU, a quadword each. [SPU ABI, va_list] documented
 class SpuVariableArguments final : public FormatArguments {
  public:
-  /// @param next  of the first argument. @param caller_stack  where the caller's frame begins, whose first 32 bytes hold
-  /// none.
+  /// @param next          address of the first argument
+  /// @param caller_stack  where the caller's frame begins, whose first 32 bytes hold no arguments
   SpuVariableArguments(const CallMemory& memory, std::uint32_t next, std::uint32_t caller_stack)
       : memory_(memory), next_(next), caller_stack_(caller_stack) {}
 
@@ -38,7 +38,7 @@ class SpuVariableArguments final : public FormatArguments {
   std::uint32_t next_, caller_stack_;
 };
 
-/// Those of a kernel that is built for the host.  [x32 psABI, variable argument lists] documented
+/// The arguments of a kernel built for the host. [x32 psABI, variable argument lists] documented
 class HostVariableArguments final : public FormatArguments {
  public:
   /// @param list  where the va_list is
@@ -53,7 +53,8 @@ class HostVariableArguments final : public FormatArguments {
   std::uint32_t local_store_address(std::uint32_t pointer) override { return pointer & dma::kLocalStoreMask; }
 
  private:
-  // Of a va_list: how far the saved registers have been used, the arguments on the stack, the saved registers.
+  // Offsets in a va_list: the offset of the next saved integer register, and of the next vector register; the address of the next argument
+  // on the stack; the address of the saved registers.
   static constexpr std::uint32_t kIntegerOffset = 0, kVectorOffset = 4, kStack = 8, kRegisters = 12;
   static constexpr std::uint32_t kIntegersEnd = 48, kVectorsEnd = 176;
 

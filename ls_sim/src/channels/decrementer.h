@@ -8,7 +8,7 @@
 
 namespace softcell::ls_sim {
 
-/// It does not count by itself: every question says what time it is, in ticks of SpuClock that never go back.
+/// An SPU's decrementer. It does not count by itself: each function gets the time `now` in ticks of SpuClock, which never go back.
 /// Used by the thread that runs the SPE. [CBEA, SPU decrementer] documented
 class Decrementer {
  public:
@@ -33,7 +33,7 @@ class Decrementer {
     running_ = false;
   }
 
-  /// Whether it has gone from 0 to 0xFFFFFFFF since the last question: event TM. It counts on from there.
+  /// Whether it has gone from 0 to 0xFFFFFFFF since the last call: event TM. It counts on from there.
   bool take_event(std::uint64_t now) {
     SC_ASSERT(now >= since_, "tick {} after tick {}", now, since_);
     if (!running_ || now < next_event_) return false;

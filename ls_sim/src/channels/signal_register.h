@@ -17,7 +17,7 @@ class SignalRegister {
   /// The reads that would not wait: 1 when something was written since the last read, even 0.
   std::uint32_t count() const { return is_set_ ? 1 : 0; }
 
-  /// What was written and not read yet is kept in OR mode, and lost in overwrite mode.
+  /// A value that was not read yet is kept in OR mode, combined with the new one, and lost in overwrite mode.
   void write(std::uint32_t value) {
     value_ = mode_ == SignalMode::kOr && is_set_ ? value_ | value : value;
     is_set_ = true;

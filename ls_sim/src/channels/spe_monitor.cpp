@@ -235,7 +235,7 @@ void SpeMonitor::give_up_turn(int spe) {
   settle();
 }
 
-/// Whenever somebody has stopped running: says who goes on, or that nobody ever will.
+/// Called when an SPE or the PPU side has stopped running: chooses who runs next, or declares a deadlock.
 void SpeMonitor::settle() {
   if (takes_turns_ && ppu_side_ == PpuSide::kInside && ppu_acts()) {
     wake_ppu();
@@ -267,9 +267,9 @@ void SpeMonitor::draw_turn() {
   member(turn_).call();
 }
 
-/// Everybody sleeps.
-/// @return  whether time alone ends that: the host's will, simulated time is made to pass. It passes for all
-///          who sleep, so that one who sleeps often and briefly does not keep the others asleep.
+/// Ends the sleep of SPEs that wait for a time, when all SPEs sleep. The host's time passes by itself. Simulated time is advanced for all
+/// sleepers alike, so that an SPE that sleeps often and briefly does not keep the others asleep.
+/// @return  whether an SPE waits for a time
 bool SpeMonitor::let_time_pass() {
   std::optional<std::uint64_t> ticks;
   for (const Member& m : used()) {

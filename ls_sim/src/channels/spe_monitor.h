@@ -28,12 +28,12 @@
 
 namespace softcell::ls_sim {
 
-/// What an SPE that sleeps waits for.
+/// What a sleeping SPE waits for.
 struct Sleep {
   std::uint32_t channel = 0;
   dma::LocalStoreAddress position;  ///< of the instruction that waits
 
-  /// When it wakes by itself, if it does: the host's time, or ticks of simulated time to come.
+  // When it wakes by itself, if it does: at this time of the host, or after so many ticks of simulated time.
   std::optional<std::chrono::steady_clock::time_point> until = {};
   std::optional<std::uint64_t> simulated_ticks = {};
 };
@@ -80,7 +80,7 @@ class SpeMonitor {
     const Lock now = lock();
     return runs(spe);
   }
-  /// Whether what the SPE runs has taken longer than that.
+  /// Whether the run or job of the SPE has taken longer than the deadline.
   bool is_late(int spe, HostTime now, std::chrono::milliseconds deadline) const {
     const auto& started = members_[index(spe)].started;
     return started && now - *started > deadline;
@@ -89,7 +89,7 @@ class SpeMonitor {
   /// Ends the SPE's sleeps from now until its run has ended.
   void stop(int spe);
 
-  // What the SPE's own thread calls while it runs.
+  // For the SPE's own thread, while it runs.
 
   /// At the beginning of a run, with the lock: waits for its turn. @return  false when it has been stopped.
   bool await_first_turn(Lock& lock, int spe);
@@ -98,7 +98,7 @@ class SpeMonitor {
   /// @return  false when the SPE has been stopped meanwhile.
   bool pass_turn(int spe) { return !takes_turns_ || pass_turn_now(spe); }
 
-  /// Sleeps until somebody calls wake(), or as Woken says. Where SPEs run freely it looks for a while first, without the host's help.
+  /// Sleeps until wake() is called, or for another reason of Woken. If SPEs run freely, it polls for a while before it sleeps.
   Woken sleep(Lock& lock, int spe, const Sleep& sleep);
 
   /// Ticks of simulated time that went by in the SPE's last sleep, whatever ended it. With the lock.
@@ -107,13 +107,13 @@ class SpeMonitor {
   /// A sentence that says which SPE waits for what, of the last deadlock. With the lock.
   const std::string& deadlock() const { return deadlock_; }
 
-  // With Interleaving::kByTime, what the SPE's own thread says of its simulated clock, without the lock.
+  // The SPE's simulated clock, with Interleaving::kByTime. For the SPE's own thread, without the lock. Times are in cycles.
 
-  /// It is `now` when the SPE's next operation happens, and `effect` when others see what it does. In cycles.
+  /// Sets the time of the SPE's next operation, and the time at which others see its effect.
   void set_time(int spe, std::uint64_t now, std::uint64_t effect);
-  /// When that happened for which the SPE has slept since the last call; 0: it has not slept.
+  /// The time of the event that woke the SPE since the last call; 0: it has not slept.
   std::uint64_t take_woken_at(int spe);
-  /// Now for an SPE that is about to run: its own time, or that of the last run that has ended.
+  /// The time at which an SPE begins a run: its own time or that of the last run that has ended, whichever is later.
   std::uint64_t time_at_start(int spe);
 
   // For threads that have changed something for which others may wait. With the lock.

@@ -58,7 +58,7 @@ void SpuChannels::begin_run(bool calls_jobs) {
   srr0_ = 0;
   parameters_ = {};
   lists_ = {};
-  has_begun_ = stop_listener_ == nullptr;  // nobody else asks
+  has_begun_ = stop_listener_ == nullptr;  // only the side that listens for stops asks for it
 }
 
 void SpuChannels::tell_begin() {
@@ -68,13 +68,14 @@ void SpuChannels::tell_begin() {
   to_.monitor.wake_ppu();
 }
 
-/// A program that executes a sync has fetched code, or will: nobody knows where to.
+/// A program that executes a sync has fetched code, or will, to an unknown place. A job loop executes it for jobs, whose images were
+/// announced.
 void SpuChannels::sync() {
   const bool is_announced = calls_jobs_ && !in_job_ && jobs_are_announced_.load(std::memory_order_relaxed);
   if (!is_announced) to_.mfc.expect_code_everywhere();
 }
 
-/// The hardware's transfers go on while the SPU stands still.
+/// Moves all bytes first: the transfers of the hardware go on while the SPU is stopped.
 bool SpuChannels::stop(std::uint32_t code, dma::LocalStoreAddress assist) {
   if (stop_listener_ == nullptr) return false;
   while (move_something()) {
@@ -82,7 +83,7 @@ bool SpuChannels::stop(std::uint32_t code, dma::LocalStoreAddress assist) {
   return stop_listener_->on_stop(code, assist, {(to_.engine.position().value + 1) & dma::kLocalStoreMask});
 }
 
-// ---- the door
+// ---- channel operations
 
 ChannelReply SpuChannels::read(std::uint32_t channel) {
   if (!begin_operation()) return stopped(channel);
@@ -146,7 +147,7 @@ ChannelReply SpuChannels::count(std::uint32_t channel) {
   if (!begin_operation()) return stopped(channel);
   if (channel_access(channel) == ChannelAccess::kNone) return illegal(channel, "count of");
   const std::uint32_t slots = count_now(static_cast<Channel>(channel));
-  // A loop that only counts asks nothing else: it is to hear of what the passing time has brought to light.
+  // A loop that only reads counts makes no other call that could return a fault which has occurred meanwhile.
   if (auto fault = to_.mfc.poll_fault()) return reply_of(std::move(fault));
   return {slots, {}};
 }
@@ -186,10 +187,10 @@ ChannelReply SpuChannels::issue_now(const dma::MfcCommand& command) {
       [&] { return mfc.issue(command); });
 }
 
-/// A call of the MFC that may have to wait for transfers; the MFC's own count says whether it had to.
+/// Makes a call of the MFC that may have to wait for transfers, and records the wait. @param waits  the MFC's own count of such waits
 template <class Waits, class Call>
 ChannelReply SpuChannels::wait_for_mfc(Channel channel, Waits&& waits, Call&& call) {
-  // Nothing waits that is done at once, and a look at the clock costs as much as a command.
+  // With this schedule nothing waits, and reading the clock would cost as much as the command.
   if (to_.options.schedule.kind == dma::Schedule::kEager) return reply_of(call());
   const std::uint64_t before = waits();
   const auto begin = HostClock::now();
@@ -259,12 +260,12 @@ ChannelReply SpuChannels::write_register(Channel channel, std::uint32_t value) {
       });
     case Channel::kSpuWrDec:
       return attempt_or_sleep(channel, [&] {
-        collect_events();  // an event of the old count stays one
+        collect_events();  // an event that the old count has raised stays
         decrementer_.write(value, clock_.ticks());
         return kDone;
       });
     case Channel::kMfcWrMsSyncReq:
-      // Transfers of others into this local store are done when they are visible at all.
+      // Transfers of other SPEs into this local store are complete as soon as they are visible, so there is nothing to wait for.
       return attempt_or_sleep(channel, [&] {
         registers.events.raise(event::kMultisourceSync);
         return kDone;
@@ -373,8 +374,7 @@ Sleep SpuChannels::sleep_at(Channel channel) const {
   return sleep;
 }
 
-/// An SPU that waits for the loss of its reservation hears of other SPEs at once, and of the stores of host
-/// threads when it looks.
+/// An SPU that waits for the loss of its reservation is woken by stores of other SPEs, but has to look for stores of host threads.
 bool SpuChannels::waits_for_host_stores(Channel channel) const {
   return channel == Channel::kSpuRdEventStat &&
          (to_.registers.events.mask() & event::kLostReservation) != 0 && to_.mfc.may_miss_host_stores();
@@ -420,7 +420,7 @@ void SpuChannels::record_wait(Channel channel, HostClock::time_point begin) {
   waits.time += end - begin;
   ++to_.statistics.channel_waits;
   to_.statistics.channel_waiting += end - begin;
-  // What a timed SPE waits for, and how long, the model says.
+  // The waits of a timed SPE are those of the timing model, which writes them to the trace itself.
   if (to_.trace != nullptr && to_.cycles == nullptr) {
     to_.trace->on_wait(number(channel), begin.time_since_epoch().count(), end.time_since_epoch().count());
   }

@@ -18,8 +18,11 @@ using dma::CommandKind;
 using dma::MfcOpcode;
 using dma::Rule;
 
-constexpr std::uint32_t kEventStatus = 0, kListStallStatus = 25, kListStallAck = 26, kAtomicStatus = 27;
-constexpr std::uint32_t kAllTags = 2;  // what MFC_WrTagUpdate waits for
+constexpr std::uint32_t kAllTags = 2;  // the condition of MFC_WrTagUpdate that waits for all tags of the mask
+
+constexpr bool is(std::uint32_t number, Channel channel) {
+  return number == static_cast<std::uint32_t>(channel);
+}
 
 std::string name_of(const dma::MfcCommand& command) { return std::string(dma::name(command.opcode())); }
 
@@ -75,13 +78,14 @@ void Checker::check_code(Address instruction) {
   unsynced_.clear();  // report it once
 }
 
-/// Whoever writes to the image's own code has a finding for that, but for programs for the SPU, which may.
+/// A kernel that writes to its image's own code has a finding of another rule for that. Programs for the SPU may write there.
 void Checker::mark_unsynced(const MovedRange& range, Address writer) {
   if (runs_spu_program() || !objects_->in_code(range.lsa))
     unsynced_.mark(range.lsa, range.bytes, writer.value);
 }
 
-/// An instruction that was stored again as it was, beside one that the program changes, is as good as before.
+/// Looks at the last store of an SPU program, now that it has happened. The store writes a whole quadword, in which the program may have
+/// changed some bytes only. Words that stay the same need no sync before the SPU executes them.
 void Checker::mark_changed_words() {
   if (!last_store_) return;
   constexpr std::uint32_t kWordBytes = 4;
@@ -150,7 +154,7 @@ void Checker::report_undefined(const ExecutedInstruction& instruction) {
     what += ", which the program has never written";
   } else {
     const std::string place = places_.of(use.from->instruction);
-    // Of a program with a heap nobody knows where the stack begins.
+    // In a program with a heap, the border between heap and stack is not known.
     const bool is_free = image_->main == 0 && use.from->lsa.value >= image_->sizes.end;
     what += ", on bytes " + (is_free ? "of heap or stack" : "at " + objects_->describe(use.from->lsa.value)) +
             " (LSA " + base::hex(use.from->lsa.value, 5) + ") that nobody has written; they were loaded at " +
@@ -223,7 +227,7 @@ void Checker::on_heap_block(const Access& block, bool is_freed) {
          freed() + ", and whoever gets these bytes next stores there; in flight: " + describe(*other));
 }
 
-/// What it reads may be more than its caller has written, such as the padding of what fwrite() is given.
+/// Does not check that bytes which the host reads were written: fwrite() of a structure also reads its padding.
 void Checker::on_host_access(dma::LocalStoreAddress lsa, std::uint32_t bytes, bool is_store) {
   const Access access{.lsa = lsa,
                       .bytes = bytes,
@@ -232,7 +236,7 @@ void Checker::on_host_access(dma::LocalStoreAddress lsa, std::uint32_t bytes, bo
                       .stack_pointer = to_.engine.stack_pointer()};
   stack_pointer_ = access.stack_pointer.value;
   if (is_store) {
-    if (objects_.has_value()) check_store(access);  // else a resident kernel before its first job
+    if (objects_.has_value()) check_store(access);  // a resident kernel has none before its first job
     written_.mark(lsa.value, bytes);
   } else {
     check_load_in_flight(access);
@@ -246,8 +250,9 @@ bool Checker::is_written(std::uint32_t lsa, std::uint32_t bytes) {
   return written_.any(lsa, bytes);
 }
 
-/// A quadword of which a byte that is not known as written is no longer as the load of the image has left it. (After a run it may be
-/// the last program's; then this finds too little, but nothing wrong.)
+/// Marks quadwords that the PPU side has written through its pointer to the local store. Such a quadword has a byte that is not marked as
+/// written and no longer has the fill pattern. (After a run such a byte may also be one of the last program's. Then a load of it is not
+/// reported, and nothing is reported wrongly.)
 void Checker::find_unseen_writes(std::uint32_t lsa, std::uint32_t bytes) {
   const std::uint32_t end = std::min(lsa + bytes, dma::kLocalStoreBytes);
   for (std::uint32_t begin = lsa / dma::kQuadwordBytes * dma::kQuadwordBytes; begin < end;
@@ -289,8 +294,9 @@ void Checker::check_store(const Access& access) {
   }
 }
 
-/// A get in flight to other bytes of the same variable and quadword: an SPU would write over them what it had loaded before. On an SPU
-/// other variables have quadwords of their own, and where those of the stack lie is not known.
+/// Returns a get in flight to other bytes of the same quadword and variable. An SPU stores whole quadwords, so it would overwrite these
+/// bytes with what it loaded before the get. Other variables need no check, because a compiler for the SPU gives each a quadword of its
+/// own. Null: there is no such get, or the access is to the stack, where the places of variables are not known.
 const CommandInFlight* Checker::get_beside(const Access& access) const {
   const std::uint32_t lsa = access.lsa.value, quadword = lsa / dma::kQuadwordBytes * dma::kQuadwordBytes;
   if (runs_spu_program() || access.bytes >= dma::kQuadwordBytes) return nullptr;
@@ -300,7 +306,7 @@ const CommandInFlight* Checker::get_beside(const Access& access) const {
   return begin < end ? in_flight_.writing(begin, end - begin) : nullptr;
 }
 
-/// For a store of an SPU program: whether the put leaves bytes of the quadword out, which may be those that the program changes.
+/// Whether a put moves only some bytes of a quadword. Then an SPU program that stores the quadword may change only the others.
 bool Checker::is_put_of_a_part(const CommandInFlight& put, std::uint32_t quadword) const {
   if (!runs_spu_program()) return false;
   return std::ranges::none_of(put.ranges, [&](const MovedRange& range) {
@@ -308,7 +314,8 @@ bool Checker::is_put_of_a_part(const CommandInFlight& put, std::uint32_t quadwor
   });
 }
 
-/// Notes the bytes of such a put: the store breaks the rule if it changes one of them.
+/// Remembers which bytes of the quadword such a put moves. The store breaks the rule only if it changes one of them, which
+/// mark_changed_words() finds out.
 void Checker::watch_bytes_of_put(const Access& store) {
   const std::uint32_t quadword = store.lsa.value;
   const CommandInFlight* const put = in_flight_.reading(quadword, dma::kQuadwordBytes);
@@ -334,7 +341,8 @@ bool Checker::check_load_in_flight(const Access& access) {
   return true;
 }
 
-/// Whether the line of an atomic command lies there, of which the program does not know yet that it is complete.
+/// Whether the access is to the line of an atomic command that the program does not know to be complete, because it has not read the
+/// command's status.
 bool Checker::is_in_unread_line(const Access& access) const {
   if (!status_unread_ || status_unread_->status_is_there) return false;
   const std::uint32_t line = status_unread_->command.lsa.value / dma::kLineBytes * dma::kLineBytes;
@@ -347,21 +355,25 @@ std::string Checker::describe(const LineCommand& line) const {
 
 void Checker::check_load(const Access& access) {
   if (check_load_in_flight(access)) return;
-  // The compiler passes arguments on the stack without telling, and warns of variables that are not set. A
-  // load of which some bytes were written takes padding along. Of a program with a heap bytes are followed to where
-  // they matter: it stores to part of a quadword by loading it first.
+  // Loads from the stack are not checked: the compiler stores arguments there without a report, and it warns of variables that are not
+  // set. A load is good if any of its bytes was written, because the others may be padding. An SPU program with a heap loads a quadword
+  // before it stores to a part of it, so undefined bytes are reported only where they have an effect (report_undefined()).
   if (runs_spu_program() && image_->main == 0) return;
   if (objects_->in_stack(access.lsa.value) || is_written(access.lsa.value, access.bytes)) return;
   report(Rule::kLoadNeverWritten, access.instruction,
          describe(access) + ": this job has not written these bytes");
 }
 
+void Checker::begin_channel_operation() {
+  stack_pointer_ = to_.engine.stack_pointer().value;
+  check_code(to_.engine.position());
+}
+
 // ---- commands
 
 ChannelReply Checker::issue(const dma::MfcCommand& command) {
-  stack_pointer_ = to_.engine.stack_pointer().value;
-  check_code(to_.engine.position());
-  check_frames(to_.engine.position(), to_.engine.stack_pointer().value);
+  begin_channel_operation();
+  check_frames(to_.engine.position(), stack_pointer_);
   CommandInFlight in_flight{
       .command = command,
       .issued_at = to_.engine.position(),
@@ -370,7 +382,7 @@ ChannelReply Checker::issue(const dma::MfcCommand& command) {
                              command.opcode() == MfcOpcode::putllc ||
                              command.opcode() == MfcOpcode::putlluc || command.opcode() == MfcOpcode::sdcrz,
       .cursor = command.lsa};
-  // The list as it is now: the command may write over it.
+  // Reads the list now, because the command may overwrite it.
   add_ranges(in_flight, to_.local_store, runs_spu_program());
   ChannelReply reply = to_.channels.issue(command);
   if (reply.fault) return reply;
@@ -392,7 +404,8 @@ void Checker::check_ranges(CommandInFlight& command) {
     for (const MovedRange& range : command.ranges) {
       check_local_range(command.command, range, command.writes_local_store);
       if (runs_spu_program() || !objects_->in_stack(range.lsa)) continue;
-      const bool is_used = range.lsa >= to_.engine.stack_pointer().value;  // else that was said
+      // Below the stack pointer check_local_range() has reported it.
+      const bool is_used = range.lsa >= to_.engine.stack_pointer().value;
       (is_used ? stack_is_in_flight_ : command.frame_was_left) = true;
     }
   }
@@ -427,7 +440,8 @@ void Checker::check_local_range(const dma::MfcCommand& command, const MovedRange
   } else if (is_get && objects_->in_code(range.lsa)) {
     report(Rule::kWriteToCode, here, "its destination is " + where, command);
   } else if (!is_get) {
-    // By quadwords, as the SPU stores. Where variables on the stack have their padding is not known.
+    // Quadword by quadword, as the SPU stores. On the stack the whole range counts as written if one byte is, because it is not known where
+    // variables there have padding.
     const std::uint32_t step = objects_->in_stack(range.lsa) ? range.bytes : dma::kQuadwordBytes;
     for (std::uint32_t done = 0; done < range.bytes; done += step) {
       if (is_written(range.lsa + done, std::min(step, range.bytes - done))) continue;
@@ -455,7 +469,7 @@ void Checker::check_line_command(const CommandInFlight& line) {
       !(reservation_ && same_line(reservation_->command.ea, command.ea)))
     report(Rule::kPutllcWithoutReservation, here, "no getllar of this line came before it", command);
   for (const MovedRange& range : line.ranges) check_local_range(command, range, line.writes_local_store);
-  check_overlaps(line);  // it does not wait for the queue
+  check_overlaps(line);  // because it does not wait for the commands in the queue
   end_reservation(command);
 }
 
@@ -474,7 +488,8 @@ void Checker::end_reservation(const dma::MfcCommand& by) {
   }
 }
 
-/// A variable of a function that has returned lies below the stack pointer: what is called next stores there.
+/// Reports commands in flight to or from variables of functions that have returned. These lie below the stack pointer, where the next
+/// function stores.
 void Checker::check_frames(Address here, std::uint32_t stack_pointer) {
   if (!stack_is_in_flight_) return;
   stack_is_in_flight_ = false;
@@ -509,25 +524,22 @@ void Checker::check_frames(Address here, std::uint32_t stack_pointer) {
 // ---- channels
 
 ChannelReply Checker::count(std::uint32_t channel) {
-  stack_pointer_ = to_.engine.stack_pointer().value;
-  check_code(to_.engine.position());
+  begin_channel_operation();
   ChannelReply reply = to_.channels.count(channel);
-  if (!reply.fault && reply.value != 0 && channel == static_cast<std::uint32_t>(Channel::kMfcRdTagStat))
-    on_tag_status();
-  if (!reply.fault && reply.value != 0 && channel == kAtomicStatus && status_unread_)
+  if (!reply.fault && reply.value != 0 && is(channel, Channel::kMfcRdTagStat)) on_tag_status();
+  if (!reply.fault && reply.value != 0 && is(channel, Channel::kMfcRdAtomicStat) && status_unread_)
     status_unread_->status_is_there = true;
   return reply;
 }
 
 ChannelReply Checker::write(std::uint32_t channel, std::uint32_t value) {
-  stack_pointer_ = to_.engine.stack_pointer().value;
-  check_code(to_.engine.position());
-  check_frames(to_.engine.position(), to_.engine.stack_pointer().value);
+  begin_channel_operation();
+  check_frames(to_.engine.position(), stack_pointer_);
   ChannelReply reply = to_.channels.write(channel, value);
   if (reply.fault) return reply;
-  if (channel == static_cast<std::uint32_t>(Channel::kMfcWrTagMask)) tag_mask_ = value;
-  if (channel == static_cast<std::uint32_t>(Channel::kMfcWrTagUpdate)) on_tag_update(value);
-  if (channel == kListStallAck) on_list_acknowledged(value);
+  if (is(channel, Channel::kMfcWrTagMask)) tag_mask_ = value;
+  if (is(channel, Channel::kMfcWrTagUpdate)) on_tag_update(value);
+  if (is(channel, Channel::kMfcWrListStallAck)) on_list_acknowledged(value);
   return reply;
 }
 
@@ -535,7 +547,8 @@ void Checker::on_tag_update(std::uint32_t condition) {
   is_waiting_ = condition != 0;
   asked_at_ = in_flight_.last_number();
   awaited_ = condition == kAllTags || std::has_single_bit(tag_mask_) ? tag_mask_ : 0;
-  // A mask of all tags is no wrong number, and commands of a tag may come later: a loop over two buffers waits for either from the start.
+  // A mask of all tags is no mistake. Nor is a tag whose first command comes later, as in a loop over two buffers that waits for both from
+  // the start; so report_idle_waits() decides at the end of the run.
   if (!is_waiting_ || (tag_mask_ & tags_issued_) != 0 || tag_mask_ == ~0u) return;
   idle_waits_.try_emplace({to_.engine.position().value, tag_mask_}, stack_pointer_);
 }
@@ -554,27 +567,28 @@ void Checker::report_idle_waits() {
   }
 }
 
-/// The tag status is there, as its channel's count or its event says, and not yet read: the tags that it waited for are complete.
+/// The program has learnt from the channel's count, or from the event, that the tag status is there. So it knows that the tags it waits for
+/// are complete, before it reads the status.
 void Checker::on_tag_status() {
   if (is_waiting_) complete(awaited_);
 }
 
 ChannelReply Checker::read(std::uint32_t channel) {
-  stack_pointer_ = to_.engine.stack_pointer().value;
-  check_code(to_.engine.position());
-  check_frames(to_.engine.position(), to_.engine.stack_pointer().value);
+  begin_channel_operation();
+  check_frames(to_.engine.position(), stack_pointer_);
   ChannelReply reply = to_.channels.read(channel);
   if (reply.fault) return reply;
-  if (channel == static_cast<std::uint32_t>(Channel::kMfcRdTagStat)) {
+  if (is(channel, Channel::kMfcRdTagStat)) {
     complete(reply.value);
   }
-  if (channel == kEventStatus && (reply.value & dma::Mfc::kTagStatusEvent) != 0) on_tag_status();
-  if (channel == kListStallStatus) on_list_stall(reply.value);
-  if (channel == kAtomicStatus) status_unread_.reset();
+  if (is(channel, Channel::kSpuRdEventStat) && (reply.value & dma::Mfc::kTagStatusEvent) != 0)
+    on_tag_status();
+  if (is(channel, Channel::kMfcRdListStallStat)) on_list_stall(reply.value);
+  if (is(channel, Channel::kMfcRdAtomicStat)) status_unread_.reset();
   return reply;
 }
 
-/// Bytes arrive at any time up to the tag status: a sync before it does not cover them.
+/// Bytes of a get may arrive at any time before its tag is complete, so a `sync` has an effect on them only after that.
 void Checker::complete(std::uint32_t tags) {
   for (const CommandInFlight& command : in_flight_.all()) {
     if (!command.writes_local_store || (tags >> command.command.tag & 1u) == 0) continue;
@@ -587,7 +601,7 @@ void Checker::on_list_stall(std::uint32_t tags) {
   for (CommandInFlight& command : in_flight_.all()) {
     if (!command.can_stall() || (tags >> command.command.tag & 1u) == 0) continue;
     command.has_stalled = true;
-    command.ranges.clear();  // of the elements up to the one that has stalled
+    command.ranges.clear();  // the elements up to the one that has stalled are complete
   }
 }
 
@@ -611,14 +625,14 @@ void Checker::end_run() {
            reservation_->command);
   }
   for (const CommandInFlight& command : in_flight_.all()) {
-    // A cache command has no results of the program's.
+    // The program needs no result of a cache command.
     if (command.command.kind() == CommandKind::kOrdering || !command.moves_local_store()) continue;
     report(Rule::kCommandsOutstanding, command.issued_at, "the program ends without a wait for its tag",
            command.command);
   }
 }
 
-// ---- words
+// ---- reports
 
 void Checker::report(Rule rule, Address place, std::string detail,
                      const std::optional<dma::MfcCommand>& command) {

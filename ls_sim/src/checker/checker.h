@@ -34,8 +34,8 @@ class SpeTrace;
 
 /// One for each SPE. Used by the thread that runs the SPE, except for on_external_write().
 ///
-/// It does not see instruction fetches. It detects code that was written without a following sync at the
-/// first load, store or channel operation of that code, or when a resident kernel calls a job that it has
+/// It sees each instruction of a program for the SPU, but not those of a kernel built for the host. There it detects code that was written
+/// without a following sync at the first load, store or channel operation of that code, or when a resident kernel calls a job that it has
 /// fetched.
 class Checker final : public ChannelPort, public AccessObserver {
  public:
@@ -116,6 +116,7 @@ class Checker final : public ChannelPort, public AccessObserver {
     std::string put_detail = {};  ///< of the finding if such a byte changes
   };
 
+  void begin_channel_operation();
   void check_code(Address instruction);
   void mark_changed_words();
   void check_fetched_code();

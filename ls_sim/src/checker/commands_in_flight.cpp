@@ -111,7 +111,7 @@ void CommandsInFlight::complete(std::uint32_t tags, std::uint64_t up_to) {
   }
   std::sort(done.begin(), done.end());
   std::erase_if(commands_, [&](const CommandInFlight& command) { return contains(done, command.number); });
-  // What is complete orders nothing any more, and neither does a barrier that has nothing to wait for.
+  // Commands that are complete, and barriers that wait for no command any more, no longer hold up others.
   for (CommandInFlight& command : commands_)
     std::erase_if(command.behind, [&](std::uint64_t number) { return contains(done, number); });
   std::erase_if(commands_, [](const CommandInFlight& command) {

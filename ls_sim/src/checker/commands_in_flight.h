@@ -28,11 +28,11 @@ struct CommandInFlight {
   bool writes_main_storage = false;
   std::vector<MovedRange> ranges = {};  ///< of a list: those of the elements that may move now
 
-  // Of a list command: its elements that may move from this one up to the next that stalls.
+  // Of a list command. Its elements that may move are those from first_element up to the next that stalls.
   std::uint32_t first_element = 0;
-  std::uint32_t next_element = 0;      ///< behind these
-  dma::LocalStoreAddress cursor = {};  ///< where the next one's bytes lie
-  bool has_stalled = false;            ///< and waits for its acknowledgement
+  std::uint32_t next_element = 0;      ///< the first element after these
+  dma::LocalStoreAddress cursor = {};  ///< where the bytes of next_element lie
+  bool has_stalled = false;            ///< the list waits for the program's acknowledgement
 
   bool frame_was_left = false;  ///< it moves a variable of a function that has returned
 
@@ -42,7 +42,7 @@ struct CommandInFlight {
   /// sdcrz writes main storage only.
   bool moves_local_store() const { return command.kind() != dma::CommandKind::kCacheHint; }
   bool is_list() const { return command.kind() == dma::CommandKind::kList; }
-  /// Elements are left behind one that stalls; the last one never does.
+  /// Whether the list may stall before its end: it has elements after those that may move. The last element never stalls.
   bool can_stall() const { return is_list() && next_element < command.size / dma::kListElementBytes; }
 };
 

@@ -17,11 +17,11 @@ class HeapBlocks {
  public:
   void clear() { blocks_.clear(); }
 
-  /// The program has got a block. A block has whole quadwords.
+  /// The program has got a block, which takes whole quadwords.
   void add(std::uint32_t lsa, std::uint32_t bytes) {
-    const std::uint32_t whole = (bytes + dma::kQuadwordBytes - 1) / dma::kQuadwordBytes * dma::kQuadwordBytes;
+    const auto whole = static_cast<std::uint32_t>(dma::round_up_to_quadword(bytes));
     SC_ASSERT(whole != 0, "a block of the heap at {} has no bytes", lsa);
-    // The freed blocks that lay there are forgotten.
+    // Forgets freed blocks in whose place it lies.
     auto at = blocks_.lower_bound(lsa);
     if (at != blocks_.begin() && end_of(*std::prev(at)) > lsa) --at;
     while (at != blocks_.end() && at->first < lsa + whole) at = blocks_.erase(at);
@@ -34,7 +34,7 @@ class HeapBlocks {
     return found == blocks_.end() || !found->second.is_live ? 0 : found->second.bytes;
   }
 
-  /// Its address is freed. @return  a sentence that says what is wrong with that; empty: nothing
+  /// The program frees the block that begins at an address. @return  a sentence that says what is wrong with that; empty: nothing
   std::string end(std::uint32_t lsa) {
     const auto found = blocks_.find(lsa);
     if (found == blocks_.end()) return "no block of the heap begins there";

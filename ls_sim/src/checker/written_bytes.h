@@ -25,14 +25,14 @@ class WrittenBytes {
 
   void mark(std::uint32_t lsa, std::uint32_t bytes) { add(lsa, bytes, kByProgram); }
 
-  /// A store of the program of which these bits are what nobody has written.
+  /// The program has stored a byte. @param undefined  its bits that come from nowhere (interpreter/undefined_values.h)
   void mark_but(std::uint32_t lsa, std::uint8_t undefined) {
     if (undefined == 0) return mark(lsa, 1);
     const bool is_part = undefined != 0xFF;
     if (is_part) undefined_[lsa] = undefined;
     flags_[lsa].store(is_part ? kByProgram | kInPart : 0, kRelaxed);
   }
-  /// The bits of a byte that nobody has written.
+  /// The undefined bits of a byte.
   std::uint8_t undefined(std::uint32_t lsa) const {
     const std::uint8_t flags = flags_[lsa].load(kRelaxed);
     return flags == 0 ? 0xFF : (flags & kInPart) != 0 ? undefined_[lsa] : 0;

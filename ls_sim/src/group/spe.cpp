@@ -16,7 +16,8 @@ namespace softcell::ls_sim {
 
 namespace {
 
-/// The memory of a host program has no main memory of softcell. What a kernel follows there is judged as with the usual size.
+/// The size that faults of kernels are explained with. The memory of a host program has no main memory of softcell; the usual size stands
+/// for it.
 std::uint64_t main_memory_bytes_of(const dma::AddressSpace& memory) {
   return memory.is_host_program() ? dma::kMainMemoryBytes : memory.main_memory_bytes();
 }
@@ -57,8 +58,8 @@ Spe::Spe(int number, dma::AddressSpace& memory, const SpeOptions& options, SpeMo
   }
 }
 
-/// Nobody above this thread would catch what the host throws, and it ends this run only. A fault gets the
-/// name of whose it is.
+/// Turns an exception of the host into a fault of this run, because nothing else on this thread would catch it. Adds the SPE and the kernel
+/// to a fault.
 template <class Work>
 RunResult Spe::guarded(const Work& work) {
   RunResult result;
@@ -92,7 +93,7 @@ RunResult Spe::run(const Run& run) {
   if (accounting.fault && !result.fault) result = std::move(accounting);
   if (job_) result.job = job_->ea;
   end_is_wanted_ = false;
-  // Whatever a kernel that failed did to its local store goes with it.
+  // A kernel that failed may have damaged its local store, so the next run loads its image anew.
   if (result.fault) resident_ = nullptr;
   job_.reset();
   return result;
@@ -133,9 +134,8 @@ class Spe::TimeOfSpe final : public TimeOrder {
  public:
   TimeOfSpe(SpeMonitor& monitor, int spe) : monitor_(monitor), spe_(spe) {}
   void set_time(std::uint64_t now, std::uint64_t effect) override { monitor_.set_time(spe_, now, effect); }
-  void await_turn() override {
-    monitor_.pass_turn(spe_);
-  }  // one that has been stopped hears of it at its next operation
+  /// An SPE that has been stopped learns of it at its next channel operation.
+  void await_turn() override { monitor_.pass_turn(spe_); }
   std::uint64_t woken_at() override { return monitor_.take_woken_at(spe_); }
 
  private:
@@ -182,8 +182,8 @@ RunResult Spe::run_engine(const Run& run) {
 }
 
 dma::LocalStoreAddress Spe::position_of(const dma::Fault& fault) const {
-  // A list's elements are looked at while it executes: the mistake is where it was issued. One that has
-  // stalled is no mistake before something waits for it.
+  // The MFC checks a list's elements while the list executes, but the mistake is where the list was issued. A list that has stalled is no
+  // mistake until the kernel waits for it.
   if (fault.rule == dma::Rule::kListStalledForEver) return engine_->position();
   return channels_.issued_at(fault).value_or(engine_->position());
 }
@@ -252,7 +252,7 @@ bool Spe::is_checked_job() const {
   return checker_ != nullptr && job_ && job_->image != nullptr && job_->image->checked;
 }
 
-/// It goes on where the caller's ends, which may be anywhere in what that one has declared.
+/// The job's stack begins where its caller's ends, which may be anywhere in the stack that the caller has declared.
 StackRange Spe::stack_of_job() const {
   SC_ASSERT(is_checked_job(), "SPE {} runs no checked job", number_);
   const KernelImage& caller = *run_->image;

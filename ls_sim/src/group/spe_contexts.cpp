@@ -284,7 +284,7 @@ class Context final : public SpeContext, private StopListener {
   }
 
   ContextStop wait_for_stop(SpeMonitor::Lock& lock) {
-    // Whoever is cancelled in the wait ends the run.
+    // Ends the run if this thread is cancelled while it waits.
     struct End {
       Context& context;
       SpeMonitor::Lock& lock;
@@ -345,7 +345,8 @@ class Context final : public SpeContext, private StopListener {
     order_.wait(lock, [&] { return resumed_ || abandoned_; });
     if (abandoned_) return false;
     resumed_ = false;
-    monitor_.await_first_turn(lock, number_->value);  // one that is to end hears of it at its next channel
+    // A program that is to end learns of it at its next channel operation.
+    monitor_.await_first_turn(lock, number_->value);
     return true;
   }
 

@@ -18,11 +18,11 @@ namespace {
 struct Orders {
   std::optional<Run> prepared, given;
   std::optional<RunResult> result;
-  bool end_untold = false;  ///< to the listener
+  bool is_end_to_be_told = false;  ///< a run has ended, and the listener does not know yet
   std::condition_variable changed;
 };
 
-/// Refuses other programs for the SPU: nobody knows where their main is, nor how much stack it takes.
+/// Refuses programs that softcell_add_spu_kernel has not built: where their main is, and how much stack it takes, is not known.
 void require_kernel(const KernelImage& image, const char* what) {
   if (image.main != 0) return;
   throw std::invalid_argument(image.name + " was not built by softcell_add_spu_kernel, as " + what +
@@ -83,7 +83,7 @@ struct SpeGroup::State final : RunSource {
       }
       orders[index(spe)].prepared.reset();
     }
-    // Nothing is prepared meanwhile: a proxy command with start must not begin a run of half an image.
+    // No run is prepared while the image is loaded, so that a proxy command with start cannot begin a run of half an image.
     threads.spe(spe).load(image);
     doors[index(spe)]->set_big_endian(image.machine == Machine::kSpu);
     const SpeMonitor::Lock lock = monitor().lock();
@@ -115,7 +115,7 @@ struct SpeGroup::State final : RunSource {
   std::optional<Run> next_run(int spe, SpeMonitor::Lock& lock) override {
     Orders& mine = orders[index(spe)];
     for (;;) {
-      if (std::exchange(mine.end_untold, false) && listener) {
+      if (std::exchange(mine.is_end_to_be_told, false) && listener) {
         SC_ASSERT(mine.result.has_value(), "a run of SPE {} has ended without a result", spe);
         const RunResult result = *mine.result;
         lock.unlock();
@@ -137,9 +137,10 @@ struct SpeGroup::State final : RunSource {
   }
 
   void on_ended(int spe, const Run&, RunResult&& result) override {
-    SC_ASSERT(!orders[index(spe)].end_untold, "SPE {} ends a run, and the end of the last is untold", spe);
+    SC_ASSERT(!orders[index(spe)].is_end_to_be_told,
+              "SPE {} ends a run, and the listener does not know of the end of the last", spe);
     orders[index(spe)].result = std::move(result);
-    orders[index(spe)].end_untold = true;
+    orders[index(spe)].is_end_to_be_told = true;
   }
 
   // Guarded by the monitor's lock:

@@ -67,7 +67,7 @@ SpeThreads::SpeThreads(dma::AddressSpace& memory, const SpeOptions& options, Run
     }
     watchdog_ = std::jthread([this] { watch(); });
   } catch (...) {
-    begin_work(Beginning::kNever);  // or those that were made would wait for runs that nobody gives
+    begin_work(Beginning::kNever);  // so that the threads that were made end
     throw;
   }
   begin_work(Beginning::kNow);

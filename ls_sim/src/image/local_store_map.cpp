@@ -19,8 +19,8 @@ std::vector<LocalStoreSection> local_store_map(const KernelImage& image) {
             image.data_end);
   const bool has_environment = image.machine == Machine::kHost;
   const bool is_at_bottom = !has_environment || image.begin == kEnvironmentBytes;
-  // Of a program for the SPU it follows the bytes of the file. ls.ld begins bss at a line and puts `end` at most one
-  // alignment behind it.
+  // In a program for the SPU, bss follows the bytes of the file. In other images ls.ld begins bss at a line, and `end` lies at
+  // most one alignment behind it.
   const std::uint32_t bss_begin = image.machine == Machine::kSpu
                                       ? image.begin + static_cast<std::uint32_t>(image.bytes.size())
                                       : (end - image.sizes.bss) / dma::kLineBytes * dma::kLineBytes;

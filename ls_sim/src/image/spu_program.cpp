@@ -158,7 +158,7 @@ class SpuElf {
   std::span<const std::byte> bytes_;
 };
 
-/// What is loaded, in order of address, checked against the local store.
+/// The segments that are loaded, in order of address, after a check that the local store has room for them.
 std::vector<SpuElf::Segment> loaded_segments(const SpuElf& elf) {
   std::vector<SpuElf::Segment> segments = elf.segments();
   if (std::ranges::any_of(segments, [](const auto& s) { return (s.flags & kOverlayFlag) != 0; }))

@@ -80,15 +80,15 @@ template <class Observer>
 
 namespace detail {
 
-// What instructions compute is part of each loop. Under the address sanitizer, which needs minutes to compile a
-// function of so many temporaries, each is a function that all loops share.
+// The code of all instructions is inlined into each loop. With the address sanitizer, which needs minutes to compile a function of so many
+// temporaries, each instruction is a function that all loops share.
 #if SC_ADDRESS_SANITIZER
 #define SC_PART_OF_THE_LOOP [[gnu::noinline]]
 #else
 #define SC_PART_OF_THE_LOOP [[gnu::always_inline]]
 #endif
 
-/// What `kSemantics` computes from the operands.
+/// The result of `kSemantics` for the operands.
 template <auto kSemantics, class... More>
 SC_PART_OF_THE_LOOP inline auto computed(const Core& core, const Operation& op, More&... more) {
   return kSemantics(core.operands(op), more...);
@@ -134,7 +134,7 @@ inline Flow stop(Core& core, std::uint32_t code, std::uint32_t& pc) {
   return core.end(Ending::kStop, code);
 }
 
-// What waits, or looks at the outside, is rare: it stays out of the loop.
+// Channel instructions and syncs are rare, so they are not inlined into the loop.
 
 [[gnu::noinline]] inline Flow read_channel(Core& core, const Operation& op, std::uint32_t pc) {
   core.state.pc = pc;

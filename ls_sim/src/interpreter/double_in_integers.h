@@ -91,7 +91,7 @@ inline std::optional<Rounded<std::uint64_t>> fused_in_integers(std::uint64_t x, 
     return Rounded<std::uint64_t>{product_is_negative == is_negative ? z : zero_of_difference, false};
   if (product_is_zero) return Rounded<std::uint64_t>{z, false};
 
-  // Both begin at bit 124 or 125, so neither their sum overflows nor what is shifted out is more than a rest.
+  // Both have their highest bit at 124 or 125. So their sum does not overflow, and bits that are shifted out are below those of the result.
   Wide product = Wide{significand(x)} * significand(y) << 20;
   const int unit_of_product = exponent_field(x) + exponent_field(y) - 2 * (1023 + kFractionBits) - 20;
   if (is_zero(z)) return rounded_double(product_is_negative, product, unit_of_product, rounding);

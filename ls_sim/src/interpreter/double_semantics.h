@@ -66,7 +66,7 @@ inline __m128d in_mode(std::uint32_t rounding, __m128d x, __m128d y, __m128d z, 
 inline __m128d of_bits(std::uint64_t bits) { return (__m128d)U64x2{bits, 0}; }
 inline std::uint64_t bits_of(__m128d value) { return ((U64x2)value)[0]; }
 
-/// What an operation is as x * y + z.
+/// An operation written as x * y + z, by the bits of its doubles.
 struct Fused {
   std::uint64_t x, y, z;
 };

@@ -9,7 +9,7 @@ namespace softcell::ls_sim::interpreter {
 /// The parameters of an MFC command are kept until its opcode is written, and then issued with it.
 class EngineChannels final : public ChannelAccess {
  public:
-  /// @param is_checked  somebody wants to hear of syncs; the engine itself never executes old instructions.
+  /// @param is_checked  whether to pass `sync` on, for the checker. The engine itself never executes stale instructions.
   EngineChannels(SpuState& state, ChannelPort& port, bool is_checked)
       : ChannelAccess(state, &port), is_checked_(is_checked) {}
 

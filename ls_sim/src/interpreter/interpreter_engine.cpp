@@ -93,7 +93,7 @@ class InterpreterEngine final : public Engine {
  private:
   void copy_program();
   void set_entry_state(const EntryArguments& arguments);
-  /// What a checked run is observed by.
+  /// The observers of a checked run.
   struct Checks {
     AccessObserver& accesses;
     UndefinedValues values;
@@ -151,7 +151,7 @@ void InterpreterEngine::set_entry_state(const EntryArguments& arguments) {
   first[1] = in_first_doubleword(arguments.argp);
   first[2] = in_first_doubleword(arguments.envp);
   first[3] = in_first_doubleword(is_libspe2 ? local_store_ea_.value : arguments.fourth);
-  // One that lies above the bottom of the local store has its stack below itself.
+  // An image above the bottom of the local store has its stack below itself.
   const bool is_above = image_->stack_top != dma::kLocalStoreBytes;
   const std::uint32_t top = is_above ? image_->stack_top - dma::kQuadwordBytes : kStackTop;
   const std::uint32_t used = is_above ? image_->stack_top - image_->sizes.stack : image_->sizes.end;
@@ -214,7 +214,7 @@ void InterpreterEngine::execute(Core& core, Checks* checks, JobCalls& jobs) {
   }
 }
 
-/// Programs that nobody looks at pay nothing for that: each kind of observer has a loop of its own.
+/// Each kind of observer has a loop of its own, so that a program that is not observed runs at full speed.
 template <class Observer>
 void InterpreterEngine::run(Core& core, Observer& observer, JobCalls& jobs) {
   if (jobs.are_watched()) {
@@ -225,7 +225,8 @@ void InterpreterEngine::run(Core& core, Observer& observer, JobCalls& jobs) {
   }
 }
 
-/// The word after the stop says what is wanted, and execution goes on behind it. [libspe2, newlib] second-hand
+/// Serves a call of the C library. The word after the stop instruction is the call, and execution goes on after it.
+/// [libspe2, newlib] second-hand
 bool InterpreterEngine::serve_call(const Core& core) {
   const bool is_call = core.ending == Ending::kStop &&
                        (core.stop_code == assisted::kC99Call || core.stop_code == assisted::kPosixCall);

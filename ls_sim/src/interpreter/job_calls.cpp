@@ -2,12 +2,10 @@
 
 #include <algorithm>
 #include <cstring>
-#include <span>
 #include <string>
 #include <utility>
 
 #include "softcell/base/assert.h"
-#include "softcell/base/text.h"
 #include "softcell/dma/local_store_bytes.h"
 
 namespace softcell::ls_sim::interpreter {
@@ -43,12 +41,9 @@ bool JobCalls::begin() {
   under_way_ = true;
   job_ = jobs_->on_job_begin({doubleword(mark)}, {doubleword(mark + sizeof(std::uint64_t))});
   last_job_end_ = job_ != nullptr ? job_->sizes.end : stack_limit();
-  frames_begin_ =
-      std::min((preferred_word(state_.registers[CheckedObserver::kStackRegister]) & dma::kLocalStoreMask) +
-                   kSharedFrameBytes,
-               caller_.stack_top);
-  variables_before_.assign(variables().begin(), variables().end());
-  frames_before_.assign(frames().begin(), frames().end());
+  const std::uint32_t stack_pointer = preferred_word(state_.registers[CheckedObserver::kStackRegister]);
+  watched_.remember(caller_, caller_.bytes, local_store_.base(),
+                    (stack_pointer & dma::kLocalStoreMask) + kSharedFrameBytes);
   fill_canary();
   return true;
 }
@@ -60,20 +55,21 @@ bool JobCalls::end() {
     return false;
   }
   if (job_ != nullptr && !std::ranges::all_of(canary(), [](std::byte b) { return b == kFiller; })) {
-    return fail(dma::Rule::kStackOverflow, "bytes below the stack were written; the image declares " +
-                                               std::to_string(job_->sizes.stack) + " bytes of stack");
+    fault_ = dma::Fault{.rule = dma::Rule::kStackOverflow,
+                        .detail = "bytes below the stack were written; the image declares " +
+                                  std::to_string(job_->sizes.stack) + " bytes of stack"};
+    return false;
   }
-  if (auto changed = changed_part()) return fail(dma::Rule::kOutsideObjects, std::move(*changed));
+  if (auto damage = watched_.damage(true)) {
+    fault_ = std::move(*damage);
+    return false;
+  }
+  watched_.forget();
   under_way_ = false;
   job_ = nullptr;
   fill_canary();  // where the job had its stack
   jobs_->on_job_end();
   return true;
-}
-
-bool JobCalls::fail(dma::Rule rule, std::string detail) {
-  fault_ = dma::Fault{.rule = rule, .detail = std::move(detail)};
-  return false;
 }
 
 std::uint32_t JobCalls::stack_limit() const {
@@ -88,34 +84,5 @@ std::span<std::byte> JobCalls::canary() const {
 }
 
 void JobCalls::fill_canary() { dma::fill_local_store(canary().data(), kFiller, canary().size()); }
-
-std::span<const std::byte> JobCalls::variables() const {
-  return {local_store_.base() + caller_.data_begin, caller_.sizes.end - caller_.data_begin};
-}
-
-std::span<const std::byte> JobCalls::frames() const {
-  return {local_store_.base() + frames_begin_, caller_.stack_top - frames_begin_};
-}
-
-/// Nobody but the job can have changed them: they would fail later, in any way at all.
-std::optional<std::string> JobCalls::changed_part() const {
-  struct Part {
-    const char* name;
-    std::span<const std::byte> now, before;
-  };
-  const std::span<const std::byte> code(local_store_.base() + caller_.begin,
-                                        caller_.data_begin - caller_.begin);
-  const Part parts[] = {{"instructions or constants", code, std::span(caller_.bytes).first(code.size())},
-                        {"variables", variables(), variables_before_},
-                        {"stack", frames(), frames_before_}};
-  for (const Part& part : parts) {
-    const auto [now, before] = std::ranges::mismatch(part.now, part.before);
-    if (now == part.now.end()) continue;
-    return "the job wrote to local-store address " +
-           base::hex(static_cast<std::size_t>(std::to_address(now) - local_store_.base()), 5) +
-           ", where kernel " + caller_.name + ", which has called it, has its " + part.name;
-  }
-  return std::nullopt;
-}
 
 }  // namespace softcell::ls_sim::interpreter

@@ -4,12 +4,11 @@
 #include <cstdint>
 #include <optional>
 #include <span>
-#include <string>
 #include <utility>
-#include <vector>
 
 #include "checked_observer.h"
 #include "core.h"
+#include "image/job_caller.h"
 #include "softcell/dma/fault.h"
 #include "softcell/ls_sim/engine.h"
 #include "softcell/ls_sim/local_store.h"
@@ -17,11 +16,11 @@
 namespace softcell::ls_sim::interpreter {
 
 /// Tells an observer where jobs begin and end. A call of code below the resident kernel's image begins a job, whose
-/// addresses the kernel has stored in its variable `job_mark` (spu_kernels/common/job_mark.h); the return ends it. What a job
-/// must not change is looked at then.
+/// addresses the kernel has stored in its variable `job_mark` (spu_kernels/common/job_mark.h); the return ends it. Then it checks whether
+/// the job has changed what it must not change.
 class JobCalls {
  public:
-  /// @param caller  the resident kernel. @param jobs  may be null: nobody wants to know.
+  /// @param caller  the resident kernel  @param jobs  null: jobs are not observed
   JobCalls(const KernelImage& caller, LocalStore& local_store, const SpuState& state, JobObserver* jobs);
 
   /// Whether a jump begins a job, or ends one.
@@ -44,13 +43,9 @@ class JobCalls {
  private:
   bool begin();
   bool end();
-  bool fail(dma::Rule rule, std::string detail);
   std::uint32_t stack_limit() const;
   std::span<std::byte> canary() const;
   void fill_canary();
-  std::optional<std::string> changed_part() const;
-  std::span<const std::byte> variables() const;
-  std::span<const std::byte> frames() const;
 
   const KernelImage& caller_;
   LocalStore& local_store_;
@@ -60,8 +55,7 @@ class JobCalls {
   bool under_way_ = false;
   const KernelImage* job_ = nullptr;  ///< null when it is not known
   std::uint32_t last_job_end_ = 0;
-  std::uint32_t frames_begin_ = 0;
-  std::vector<std::byte> variables_before_, frames_before_;  ///< as they were when the job was called
+  JobCaller watched_;  ///< caller_, while a job is under way
   std::optional<dma::Fault> fault_;
 };
 
@@ -86,7 +80,7 @@ class WithJobs {
   Observer& observer_;
 };
 
-/// Passes on what jobs do, and nothing of the kernel that calls them: that is not checked.
+/// Passes on the accesses of jobs, but not those of the kernel that calls them, which is not checked.
 class JobAccesses final : public AccessObserver {
  public:
   JobAccesses(const JobCalls& jobs, AccessObserver& to) : jobs_(jobs), to_(to) {}

@@ -103,7 +103,7 @@ std::uint64_t IssueModel::arrive(std::uint32_t pc, CycleCounts& counts) {
 
 // ---- channels
 
-/// Whoever performs the instruction has the clock wait.
+/// The channel operation itself, which is executed next, advances the clock by its waits.
 void IssueModel::start_channel(const Operation& op, const Traits& traits) {
   timer_.clock.advance_to(last_issue_);
   is_interrupted_ = is_in_channel_ = true;

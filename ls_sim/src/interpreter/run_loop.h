@@ -10,9 +10,8 @@
 
 namespace softcell::ls_sim::interpreter {
 
-/// The words of a local store as decoded operations. Before the loop executes one, it compares the word with the
-/// local store and decodes it again if they differ, whoever has written it. So nobody has to report stores and
-/// transfers.
+/// The words of a local store as decoded operations. Before the loop executes one, it compares its word with the
+/// local store and decodes it anew if they differ. So stores and transfers need not be reported.
 class DecodedStore {
  public:
   DecodedStore() : operations_(dma::kLocalStoreBytes / 4, decode(0)) {}
@@ -101,7 +100,7 @@ template <class Observer>
       }
     }
     if (__builtin_expect(core.state.interrupts_enabled, 0)) {
-      if constexpr (HasClock<Observer>) observer.bring_clock();  // whether the decrementer has ended is asked
+      if constexpr (HasClock<Observer>) observer.bring_clock();  // for the event of the decrementer
       if (!take_interrupt(core, pc)) break;
     }
   }

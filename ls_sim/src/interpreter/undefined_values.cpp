@@ -32,7 +32,8 @@ Quadword scattered(std::uint8_t reg, std::uint32_t seed) {
   return q;
 }
 
-/// What may stand in undefined bits: extremes, others than those that are there, those with which they are compared.
+/// The values that a trial puts into undefined bits: extremes, the opposites of the present ones, and the operands with which they may be
+/// compared.
 constexpr int kTrials = 32;
 Quadword other_bits(int trial, const Operation& op, std::uint8_t reg, const SpuState& state) {
   switch (trial) {

@@ -1,12 +1,11 @@
 #pragma once
-// Which bits of the registers come from nowhere: from registers or from bytes of the local store that nobody has
-// written. They are followed to where they matter.
+// Undefined bits of registers: those that come from registers or bytes of the local store that nobody has written. They are followed until
+// they have an effect: an address, a branch, a halt or a channel depends on them.
 //
-// A bit of a result is undefined if it changes when the undefined bits among the operands do: the instruction is computed
-// again with others in their place. So all instructions are treated alike, and an `and` with a mask, a shuffle, a select
-// or a count of shifts makes of undefined bits what it makes of them on the SPU. Where an instruction moves bits or adds
-// whole lanes, that is known without. What is reported does depend on them; of a comparison that tells few values apart
-// something may be missed.
+// A bit of a result is undefined if it changes when undefined bits of the operands change. To find out, the instruction is computed again
+// with other values in their place (a trial). So all instructions are treated alike: masks, shuffles, selects and counts of shifts act on
+// undefined bits as they do on the SPU. Instructions that move bits or add whole lanes need no trials. Whatever is reported does depend on
+// undefined bits. A dependence may be missed if few values make a difference, as in a comparison for equality.
 
 #include <array>
 #include <optional>

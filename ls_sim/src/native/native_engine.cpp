@@ -15,6 +15,7 @@
 
 #include "assisted/assisted_calls.h"
 #include "debugger_symbols.h"
+#include "image/job_caller.h"
 #include "kernel_context.h"
 #include "signals.h"
 #include "softcell/base/assert.h"
@@ -22,6 +23,7 @@
 #include "softcell/dma/local_store_bytes.h"
 #include "softcell/ls_sim/engine.h"
 #include "softcell/ls_sim/local_store.h"
+#include "trap_fault.h"
 
 namespace softcell::ls_sim {
 
@@ -88,7 +90,7 @@ class NativeEngine final : public Engine {
     std::byte* const base = local_store_.base();
     linked_ = image.bytes;
     for (const dma::LocalStoreAddress word : image.relocations)
-      add_to_word(linked_, word.value - image.begin);
+      relocate_word(linked_, word.value - image.begin);
     native::Environment environment;
     environment.gate = native::gate_below_4_gb();
     dma::copy_to_local_store(base, reinterpret_cast<const std::byte*>(&environment), sizeof environment);
@@ -123,8 +125,8 @@ class NativeEngine final : public Engine {
   }
 
   std::uintptr_t arena() const { return reinterpret_cast<std::uintptr_t>(local_store_.base()); }
-  /// Read field by field: a copy of it all in wide pieces would wait for the kernel's narrow stores to leave
-  /// the processor's store queue, which costs as much as the rest of a command.
+  /// Read it field by field. A copy of the whole in wide pieces would have to wait until the kernel's narrow stores have left the
+  /// processor's store queue, which costs as much as the rest of a command.
   const native::Environment& environment() const {
     return *reinterpret_cast<const native::Environment*>(local_store_.base());
   }
@@ -138,8 +140,8 @@ class NativeEngine final : public Engine {
     return lowest.begin < stack_limit() ? lowest.sizes.end : std::max(kEnvironmentBytes, last_job_end_);
   }
 
-  /// A word that holds an address in the image gets the host's.
-  void add_to_word(std::vector<std::byte>& bytes, std::uint32_t offset) const {
+  /// Relocates a word that holds an address in the image: makes it the address in the host's memory.
+  void relocate_word(std::vector<std::byte>& bytes, std::uint32_t offset) const {
     std::uint32_t word = 0;
     SC_ASSERT(bytes.size() >= sizeof word && offset <= bytes.size() - sizeof word, "a relocation at {} of {}",
               offset, bytes.size());
@@ -156,19 +158,16 @@ class NativeEngine final : public Engine {
   void tell_of_access();
   std::optional<dma::Fault> mark_job();
   std::optional<dma::Fault> end_job();
-  std::span<const std::byte> variables_of_caller() const;
-  std::span<const std::byte> frames_of_caller() const;
-  std::optional<dma::Fault> check_caller() const;
+  /// Breakpoints of a debugger are written into the code.
+  std::optional<dma::Fault> check_caller() const { return caller_.damage(!debugger_wanted_); }
   Access requested_access() const;
   ChannelReply answer_channel();
   std::optional<dma::Fault> check_stack() const;
   std::span<std::byte> canary() const;
   void fill_canary() { dma::fill_local_store(canary().data(), kFiller, canary().size()); }
   bool written_below_stack() const { return !std::ranges::all_of(canary(), is_filler); }
-  std::optional<std::uint32_t> call_of_what_is_no_code() const;
   dma::Fault classify_trap() const;
   dma::Fault cause_of_trap() const;
-  dma::Fault memory_fault(const std::string& where) const;
   std::string describe_damaged_code() const;
   dma::Fault stack_overflow(std::string detail) const;
 
@@ -184,15 +183,13 @@ class NativeEngine final : public Engine {
   const KernelImage* image_ = nullptr;
   std::vector<std::byte> linked_;           ///< the bytes of image_ as they lie in this local store
   const KernelImage* job_image_ = nullptr;  ///< that image_ has called; null when it is not known
-  bool job_under_way_ = false;
+  bool job_under_way_ = false;              ///< also if its image is not known
   std::uint32_t last_job_end_ = 0;  ///< where the image ends that was called last, which stays; 0: none was
   const bool debugger_wanted_ = native::debugger_wanted();
   std::unique_ptr<native::DebuggerSymbols> debugger_symbols_;  ///< of the image; null when nobody debugs
   std::unique_ptr<native::DebuggerSymbols> debugger_job_symbols_;
-  bool data_as_linked_ = false;              ///< nothing has run since load()
-  std::vector<std::byte> caller_variables_;  ///< of image_, as they were when it called job_image_
-  std::vector<std::byte> caller_frames_;     ///< likewise its stack, from caller_frames_begin_ on
-  std::uint32_t caller_frames_begin_ = 0;
+  bool data_as_linked_ = false;  ///< nothing has run since load()
+  JobCaller caller_;             ///< image_, when it called job_image_
   KernelContext context_;
   ChannelPort* channels_ = nullptr;  // these five: of the run
   AccessObserver* accesses_ = nullptr;
@@ -223,6 +220,7 @@ void NativeEngine::prepare(const EntryArguments& arguments) {
   environment().mfc_tag_mask = tag_mask_ = 0;
   job_image_ = nullptr;
   job_under_way_ = false;
+  caller_.forget();
   context_.entry = arena() + image_->entry;
   context_.arguments[0] = arguments.spe_id;
   context_.arguments[1] = arguments.argp;
@@ -258,23 +256,10 @@ void NativeEngine::run_kernel() {
   std::atomic_signal_fence(std::memory_order_seq_cst);
   context_.in_kernel = 0;
   if (context_.operation() == Operation::kFault) {
-    if (const auto call = call_of_what_is_no_code()) context_.caller = arena() + *call;
+    if (const auto call = native::call_outside(context_.trap, local_store_.base()))
+      context_.caller = arena() + *call;
     result_ = {0, classify_trap()};
   }
-}
-
-/// Where the kernel has called an address outside of the local store: it lies on the stack where to return to.
-/// @return  nothing: it has not.
-std::optional<std::uint32_t> NativeEngine::call_of_what_is_no_code() const {
-  const native::Trap& trap = context_.trap;
-  const std::uintptr_t top = trap.stack - arena();
-  if (!trap.instruction_fetch || trap.instruction != trap.address ||
-      top > dma::kLocalStoreBytes - sizeof(std::uint64_t))
-    return std::nullopt;
-  std::uint64_t back = 0;
-  std::memcpy(&back, local_store_.base() + top, sizeof back);
-  const std::uintptr_t call = back - 1 - arena();
-  return call < dma::kLocalStoreBytes ? std::optional(static_cast<std::uint32_t>(call)) : std::nullopt;
 }
 
 RunResult NativeEngine::run(const EntryArguments& arguments, ChannelPort& channels, AccessObserver* accesses,
@@ -360,7 +345,7 @@ std::optional<RunResult> NativeEngine::answer() {
   }
   ChannelReply reply = answer_channel();
   if (reply.fault) {
-    // A caller whose code the job has damaged may do anything before it reports the job's end.
+    // If the job has damaged its caller's code, the caller may do anything, such as break a rule here.
     if (job_under_way_)
       if (auto damage = check_caller()) return RunResult{0, std::move(damage)};
     return RunResult{0, std::move(*reply.fault)};
@@ -396,8 +381,8 @@ void NativeEngine::tell_of_access() {
     accesses_->on_access(requested_access());
 }
 
-/// A job has its own image at the bottom and its stack below its caller's; what it leaves behind is as a
-/// kernel's own.
+/// The kernel marks that it calls a job, or that the job has returned. A job's image lies at the bottom of the local store, its stack below
+/// its caller's.
 std::optional<dma::Fault> NativeEngine::mark_job() {
   if (jobs_ == nullptr) return std::nullopt;
   if (context_.channel() == 0) return end_job();
@@ -405,16 +390,12 @@ std::optional<dma::Fault> NativeEngine::mark_job() {
   const KernelImage* const last = job_image_;
   job_under_way_ = true;
   job_image_ = jobs_->on_job_begin({environment.job_image_ea}, {environment.job_ea});
-  // One that is not known may end anywhere below its caller's stack.
+  // An image that is not known may end anywhere below its caller's stack.
   last_job_end_ = job_image_ != nullptr ? job_image_->sizes.end : stack_limit();
   tag_mask_ = ~environment.mfc_tag_mask;  // so that the channels get the mask with which the job begins
-  const std::span<const std::byte> variables = variables_of_caller();
-  SC_ASSERT(variables.size() <= dma::kLocalStoreBytes, "{} has {} bytes of variables", image_->name,
-            variables.size());
-  caller_variables_.assign(variables.begin(), variables.end());
-  caller_frames_begin_ = static_cast<std::uint32_t>(context_.stack_pointer - arena()) + kGateLinkBytes;
-  const std::span<const std::byte> frames = frames_of_caller();
-  caller_frames_.assign(frames.begin(), frames.end());
+  // Where the gate returns to, which is another place each time, lies below.
+  const auto frames_begin = static_cast<std::uint32_t>(context_.stack_pointer - arena()) + kGateLinkBytes;
+  caller_.remember(*image_, linked_, local_store_.base(), frames_begin);
   if (job_image_ == nullptr) return std::nullopt;
   if (debugger_wanted_ && job_image_ != last) {
     debugger_job_symbols_ = std::make_unique<native::DebuggerSymbols>(*job_image_, local_store_.base());
@@ -433,48 +414,9 @@ std::optional<dma::Fault> NativeEngine::end_job() {
     return stack_overflow("bytes below the stack were written");
   if (auto damage = check_caller()) return damage;
   job_image_ = nullptr;
-  caller_variables_.clear();
-  caller_frames_.clear();
+  caller_.forget();
   fill_canary();  // where the job had its stack
   jobs_->on_job_end();
-  return std::nullopt;
-}
-
-std::span<const std::byte> NativeEngine::variables_of_caller() const {
-  return {local_store_.base() + image_->data_begin, image_->sizes.end - image_->data_begin};
-}
-
-/// The caller's frames from where it reports a job. It writes nothing there before it reports the job's
-/// end; where the gate returns to, which is another place each time, lies below.
-std::span<const std::byte> NativeEngine::frames_of_caller() const {
-  const std::uint32_t top = image_->stack_top;
-  return {local_store_.base() + std::min(caller_frames_begin_, top), local_store_.base() + top};
-}
-
-/// While a job runs nobody but the job can have changed its caller's image or frames, which would fail later
-/// and in any way at all: then the job is no longer known.
-std::optional<dma::Fault> NativeEngine::check_caller() const {
-  struct Part {
-    const char* name;
-    std::span<const std::byte> now, before;
-  };
-  const std::size_t code_bytes = image_->data_begin - image_->begin;
-  const Part parts[] = {{"instructions or constants",
-                         {local_store_.base() + image_->begin, code_bytes},
-                         {linked_.data(), code_bytes}},
-                        {"variables", variables_of_caller(), caller_variables_},
-                        {"stack", frames_of_caller(), caller_frames_}};
-  // Breakpoints of a debugger are written into the code.
-  for (const Part& part : std::span(parts).subspan(debugger_wanted_ ? 1 : 0)) {
-    SC_ASSERT(part.now.size() == part.before.size(), "{} of {}: {} bytes now, {} before the job", part.name,
-              image_->name, part.now.size(), part.before.size());
-    if (std::memcmp(part.now.data(), part.before.data(), part.before.size()) == 0) continue;
-    const std::byte* const at = std::to_address(std::ranges::mismatch(part.now, part.before).in1);
-    return fault(dma::Rule::kOutsideObjects,
-                 "the job wrote to local-store address " +
-                     base::hex(static_cast<std::uint64_t>(at - local_store_.base()), 5) + ", where kernel " +
-                     image_->name + ", which has called it, has its " + part.name);
-  }
   return std::nullopt;
 }
 
@@ -490,8 +432,8 @@ Access NativeEngine::requested_access() const {
 ChannelReply NativeEngine::answer_channel() {
   const native::Environment& environment = this->environment();
   if (context_.request == native::request_of(Operation::kWrite, number(Channel::kMfcCmd))) {
-    // One by one, as the kernel stored them: the processor does not forward two stores to one load, and the
-    // volatile keeps the compiler from making one of two.
+    // Reads the words one by one, as the kernel stored them, because the processor cannot forward two stores to one load. The volatile
+    // keeps the compiler from joining two loads.
     const auto word = [](const std::uint32_t& stored) {
       return static_cast<const volatile std::uint32_t&>(stored);
     };
@@ -559,7 +501,7 @@ dma::Fault NativeEngine::classify_trap() const {
   return cause;
 }
 
-/// Code that something has written to makes a kernel fail in any way at all.
+/// Says whether code was overwritten, which may be the reason of any other fault. Empty: it was not.
 std::string NativeEngine::describe_damaged_code() const {
   const KernelImage* const image = job_under_way_ ? job_image_ : image_;
   if (image == nullptr || debugger_wanted_) return {};  // breakpoints of a debugger are written into the code
@@ -574,6 +516,7 @@ std::string NativeEngine::describe_damaged_code() const {
 
 dma::Fault NativeEngine::cause_of_trap() const {
   const native::Trap& trap = context_.trap;
+  const std::byte* const local_store = local_store_.base();
   const std::uintptr_t at = trap.instruction - arena();
   if (trap.stale) {
     return fault(dma::Rule::kStaleInstructions,
@@ -582,13 +525,9 @@ dma::Fault NativeEngine::cause_of_trap() const {
                      "instructions, not those that the local store holds");
   }
   if (job_image_ != nullptr) {
-    if (auto damage = check_caller()) return *damage;  // whatever came of it
+    if (auto damage = check_caller()) return *damage;  // the reason, whatever the trap was
   }
-  const auto call = call_of_what_is_no_code();
-  const std::string where = at < dma::kLocalStoreBytes
-                                ? "the instruction at local-store address " + base::hex(at, 5)
-                            : call ? "the call at local-store address " + base::hex(*call, 5)
-                                   : "an instruction outside the local store";
+  const std::string where = native::place_of(trap, local_store, native::call_outside(trap, local_store));
   if (trap.signal == native::kInterruptSignal) {
     return fault(dma::Rule::kDeadlineExceeded,
                  "the kernel did not end in time; it was at local-store address " + base::hex(at, 5));
@@ -598,55 +537,10 @@ dma::Fault NativeEngine::cause_of_trap() const {
     return stack_overflow("the stack pointer is " + std::to_string(arena() + stack_limit() - trap.stack) +
                           " bytes below its limit at " + where);
   }
-  // A stack that grew through the kernel's own code makes it fail in any way at all: this is where it began.
+  // A stack that has grown into the kernel's own code may be the reason of any other fault.
   if (written_below_stack())
     return stack_overflow("bytes below the stack were written before " + where + " failed");
-  if (trap.signal == SIGILL || trap.signal == SIGTRAP) {
-    return fault(dma::Rule::kIllegalInstruction, where + " is invalid");
-  }
-  if (trap.signal == SIGFPE) {
-    return fault(
-        dma::Rule::kIllegalInstruction,
-        where + " divides an integer by zero, or the smallest integer by -1, whose quotient has no place");
-  }
-  return memory_fault(where);
-}
-
-dma::Fault NativeEngine::memory_fault(const std::string& where) const {
-  const native::Trap& trap = context_.trap;
-  if (trap.general_protection) {
-    return fault(dma::Rule::kOutsideLocalStore, where + " used a pointer that is not a valid address");
-  }
-  const char* const access = trap.instruction_fetch ? " jumped to "
-                             : trap.write           ? " wrote to "
-                                                    : " read from ";
-  if (trap.address == 0) {
-    return fault(dma::Rule::kOutsideLocalStore, where + access + "address " + base::hex(0, 5) +
-                                                    ", by a null pointer" +
-                                                    (trap.instruction_fetch ? " to a function" : ""));
-  }
-  const std::uintptr_t offset = trap.address - arena();
-  if (offset < 2 * std::uintptr_t{dma::kLocalStoreBytes}) {
-    return fault(dma::Rule::kOutsideLocalStore, where + access +
-                                                    base::byte_count(offset - dma::kLocalStoreMask) +
-                                                    " past the end of the local store");
-  }
-  if (arena() - trap.address <= LocalStore::kGuardBytes) {
-    return fault(dma::Rule::kOutsideLocalStore,
-                 where + access + base::byte_count(arena() - trap.address) + " before the local store");
-  }
-  // After the addresses around the local store, which may be low words of addresses in a large main memory.
-  if (dma::is_low_word_of_effective_address(trap.address, main_memory_bytes_)) {
-    return fault(dma::Rule::kEffectiveAddressAsPointer,
-                 where + access + "address " + base::hex(trap.address, 5) +
-                     ", the low 32 bits of an effective address; main storage is reached by DMA only");
-  }
-  return fault(
-      dma::Rule::kOutsideLocalStore,
-      where + access + "address " + base::hex(trap.address, 5) +
-          (trap.address < dma::kLocalStoreBytes
-               ? ", which is no pointer in a kernel built for the host: its local store lies elsewhere"
-               : ", which is neither in the local store nor an effective address"));
+  return native::fault_of_instruction(trap, local_store, where, main_memory_bytes_);
 }
 
 std::uint32_t NativeEngine::stack_high_water() const {

@@ -1,5 +1,5 @@
 #pragma once
-// What the jobs of each kernel take that a resident kernel calls.
+// The cycles of jobs that a resident kernel calls, by the kernel of the job.
 
 #include <algorithm>
 #include <cstdint>

@@ -61,8 +61,8 @@ std::uint64_t MfcTimer::issue(const dma::MfcCommand& command, std::uint64_t now,
   return complete;
 }
 
-/// What fences and barriers let it wait for. A list that has stalled holds up nothing here: who waits for it has to
-/// acknowledge it first.
+/// When a command may start, which fences and barriers may delay. A list that has stalled delays nothing here, because the program must
+/// acknowledge it before the command can complete.
 std::uint64_t MfcTimer::start_of(const dma::MfcCommand& command, std::uint64_t now) const {
   std::uint64_t start = std::max(now, queue_barrier_);
   for (const Entry& entry : queue_) {
@@ -101,7 +101,7 @@ std::uint64_t MfcTimer::run(const dma::MfcCommand& command, std::uint64_t now,
   return stream.complete;
 }
 
-/// Each line is asked for when the one before has been, and when not too many are on their way.
+/// Times the lines of one transfer. A line is requested after the one before it, and when fewer than outstanding_lines are under way.
 void MfcTimer::move(Stream& stream, bool is_get, dma::EffectiveAddress ea, std::uint32_t bytes) {
   if (bytes == 0) return;
   const int other = owner_of(ea);

@@ -62,11 +62,11 @@ class MfcTimer {
     std::uint64_t stalled;  ///< when
     std::uint64_t issued;
   };
-  /// Lines that are asked for one after the other.
+  /// Lines that are requested one after the other. Times are in cycles.
   struct Stream {
-    std::uint64_t request;       ///< when the next is asked for, at the earliest
-    std::uint64_t complete = 0;  ///< the last so far
-    std::uint64_t first = 0;
+    std::uint64_t request;       ///< the earliest time of the next request
+    std::uint64_t complete = 0;  ///< when the last line so far is complete
+    std::uint64_t first = 0;     ///< when the first line is complete
     std::uint64_t lines = 0;
   };
 
@@ -84,7 +84,7 @@ class MfcTimer {
   PortUse& port_;
   const TimingParameters& parameters_;
 
-  std::vector<Entry> queue_;  ///< and those that were complete when nobody looked
+  std::vector<Entry> queue_;  ///< also commands that are complete, until the next look
   std::vector<StalledList> stalled_;
   std::uint64_t queue_barrier_ = 0;  ///< later commands start then, at the earliest
   std::array<std::uint64_t, dma::kTagCount> list_stalls_{};

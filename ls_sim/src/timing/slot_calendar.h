@@ -9,8 +9,8 @@
 
 namespace softcell::ls_sim {
 
-/// Whoever comes later takes what is free between those who came before: commands of several SPEs share what they use,
-/// and no slot stays empty for which somebody waits.
+/// A later request takes the first slot that is free, also between slots that earlier requests have taken. So commands of several SPEs
+/// share a port, and no slot stays free while a command waits for one.
 class SlotCalendar {
  public:
   /// The first free slot from `slot` on. Slots before those that were forgotten count as taken.
@@ -34,7 +34,7 @@ class SlotCalendar {
     words_[word] |= std::uint64_t{1} << ((slot - begin_) % kBits);
   }
 
-  /// Nobody asks for slots before this one any more.
+  /// Frees the memory of slots before this one, for which no request will come.
   void forget_before(std::uint64_t slot) {
     while (!words_.empty() && begin_ + kBits <= slot) {
       words_.pop_front();

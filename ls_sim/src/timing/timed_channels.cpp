@@ -125,12 +125,13 @@ ChannelReply TimedChannels::count(std::uint32_t channel) {
 /// The command waits for a free slot first. What it does to other SPEs, it does at its end.
 ChannelReply TimedChannels::issue(const dma::MfcCommand& command) {
   arrive();
-  order_.await_turn();  // what its lines need of the bus they take now, and SPEs behind would find it taken
+  // The command takes its slots of the bus now, so SPEs whose time is earlier must have taken theirs.
+  order_.await_turn();
   if (command.kind() != dma::CommandKind::kLine &&
       wait_until(timer_.mfc.slot_free(timer_.clock.now()), Stall::kDmaQueue, Channel::kMfcCmd))
     ++timer_.queue_waits;
   const std::uint64_t now = timer_.clock.now();
-  // Nobody has looked at the list yet, and a command that breaks a rule ends the run.
+  // A list is timed after the MFC has accepted it, because its elements may break a rule. Other commands are checked here.
   const bool is_list = command.kind() == dma::CommandKind::kList;
   const bool is_plausible = can_be_timed(command);
   std::uint64_t complete = now;

@@ -48,7 +48,7 @@ struct TracedCommand {
 };
 static_assert(sizeof(TracedCommand) == 40);
 
-/// What Findings takes for the same mistake is one, however often it happens.
+/// All occurrences of one mistake (is_same_mistake()).
 struct TracedFinding {
   TraceTime when;  ///< of the first
   dma::Fault first;

@@ -242,7 +242,7 @@ base::JsonText& TraceWriter::event(std::string_view phase, int spe, int row) {
 base::JsonText& TraceWriter::slice(int spe, int row, TraceTime begin, TraceTime end,
                                    std::string_view category, std::string_view quoted_name) {
   SC_ASSERT(begin <= end, "{} of SPE {} begins at {} and ends at {}", quoted_name, spe, begin, end);
-  // What began before the trace is shown from its beginning.
+  // An event that began before the trace is shown from the trace's beginning.
   const TraceTime from = std::max<TraceTime>(begin - begin_, 0), to = std::max(end - begin_, from);
   return event("X", spe, row)
       .raw(",\"ts\":")

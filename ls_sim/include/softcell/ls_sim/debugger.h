@@ -11,7 +11,7 @@ namespace softcell::ls_sim {
 
 /// A register in the byte order of the SPU: byte 0 is the most significant.
 using RegisterBytes = std::array<std::byte, dma::kQuadwordBytes>;
-inline constexpr int kSpuRegisters = 128;
+inline constexpr int kSpuRegisters = 128;  ///< their number
 
 /// An SPE in the middle of a program, while it is stopped.
 class DebuggedSpe {

@@ -9,7 +9,7 @@
 
 namespace softcell::ls_sim {
 
-/// What the load of an image leaves in the bytes that it does not have.
+/// Loading an image sets all bytes of the local store that are not the image's to this value.
 inline constexpr std::byte kFiller{0xA5};
 
 /// 256 KB of readable, writable and executable memory, below 4 GB, so that a kernel's pointers have 32 bits as on an SPU. It is aligned to

@@ -81,7 +81,7 @@ class ProblemState {
   virtual dma::EffectiveAddress local_store_ea() const = 0;
 };
 
-/// Any thread, unless a function says otherwise.
+/// Up to six SPEs, numbered from 0. Any thread, unless a function says otherwise.
 /// @throws std::invalid_argument  (all functions with `spe`) the group has no such SPE.
 class SpeGroup {
  public:
@@ -96,7 +96,7 @@ class SpeGroup {
   SpeGroup(const SpeGroup&) = delete;
   SpeGroup& operator=(const SpeGroup&) = delete;
 
-  int spes() const;
+  int spes() const;  ///< their number, 1..6
 
   /// Loads an image into an SPE. Between prepare() and start(), the PPU side and other SPEs may write to the
   /// local store: if SPEs communicate, prepare all of them before you start the first. Mailboxes and signal

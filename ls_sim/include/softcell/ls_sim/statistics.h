@@ -20,10 +20,10 @@ inline constexpr std::size_t kWaitingChannels = 31;
 
 /// Sums since the SPE was made.
 struct SpeStatistics {
-  std::uint64_t jobs = 0;  ///< runs
-  std::uint64_t image_loads = 0;
+  std::uint64_t jobs = 0;          ///< runs; of a resident kernel, the jobs that it has called
+  std::uint64_t image_loads = 0;   ///< by the PPU side
   std::uint64_t instructions = 0;  ///< of programs built for the SPU; those of native kernels are not counted
-  std::chrono::nanoseconds busy{0};
+  std::chrono::nanoseconds busy{0};  ///< in `jobs`
   dma::MfcStatistics dma;
   std::uint64_t channel_waits = 0;  ///< channel operations that blocked, tag waits included
   std::chrono::nanoseconds channel_waiting{0};

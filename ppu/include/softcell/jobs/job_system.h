@@ -100,6 +100,8 @@ class JobSystem {
 /// the order in which these were constructed: jobs of an earlier chain go first.
 class JobChain {
  public:
+  /// @param name       for messages and traces
+  /// @param most_jobs  room for so many; reserve() makes more
   /// @throws std::runtime_error  there are 15 chains already, or main memory is full.
   JobChain(JobSystem& system, const std::string& name, std::size_t most_jobs);
 

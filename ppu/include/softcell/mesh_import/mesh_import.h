@@ -1,6 +1,7 @@
 #pragma once
 // Reads triangle meshes from files.
 
+#include <cstddef>
 #include <filesystem>
 #include <span>
 #include <string>

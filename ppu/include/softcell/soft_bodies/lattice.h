@@ -8,6 +8,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -38,8 +39,10 @@ struct Csr {
 /// it for each particle.
 template <int kDimension>
 inline constexpr std::uint32_t kMaxLatticeParticles = kDimension == 2 ? 1u << 16 : 1u << 20;
+/// The most cells of a lattice along an axis.
 inline constexpr int kMaxLatticeCellsPerAxis = 256;
 
+/// Cells and particles at rest. The functions below make lattices; the arrays fit each other only as these make them.
 /// @tparam kDimension  2 or 3
 template <int kDimension>
 struct Lattice {

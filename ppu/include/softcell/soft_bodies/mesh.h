@@ -52,10 +52,11 @@ struct TriangleMesh {
 TriangleMesh make_mesh(std::span<const Eigen::Vector3f> positions,
                        std::span<const std::array<std::uint32_t, 3>> triangles);
 
-/// An axis-aligned box, metres.
+/// An axis-aligned box, metres. A default one is the point 0.
 template <int kDimension>
 struct Bounds {
-  Eigen::Vector<float, kDimension> low, high;
+  using Vector = Eigen::Vector<float, kDimension>;
+  Vector low = Vector::Zero(), high = Vector::Zero();
 };
 
 /// The mesh's axis-aligned box. @pre at least one position.

@@ -21,6 +21,8 @@ template <typename Real, int kDimension>
 class ShapeMatcher;
 template <int kDimension>
 class LostMomenta;
+template <int kDimension>
+class RestShape;
 
 /// Rotations and angular velocities in two dimensions and three.
 template <int kDimension>
@@ -194,10 +196,8 @@ class SoftBody {
   void place_at_rest(const Vector& position);
   void forget_rotations();
   void end_pull();
-  struct RestShape;
-  void set_rest(std::unique_ptr<RestShape> rest);
-  std::unique_ptr<RestShape> rest_of(std::span<const Vector> positions) const;
-  void adopt_rest(std::unique_ptr<RestShape> rest);
+  void set_rest(std::unique_ptr<RestShape<kDimension>> rest);
+  void adopt_rest(std::unique_ptr<RestShape<kDimension>> rest);
   void read_flow();
 
   std::shared_ptr<const SoftBodyModel<kDimension>> model_;
@@ -207,7 +207,7 @@ class SoftBody {
   std::vector<Eigen::Vector4f> padded_;  // x_ again, in three dimensions
   std::unique_ptr<ShapeMatcher<float, kDimension>> matcher_;
   std::unique_ptr<LostMomenta<kDimension>> lost_;
-  std::unique_ptr<RestShape> rest_;  // null: the body is elastic, or was never looked at
+  std::unique_ptr<RestShape<kDimension>> rest_;  // null: the body is elastic, or was never looked at
   int steps_since_look_ = 0;
   std::uint32_t revision_ = 0, resets_ = 0, rest_revision_ = 0;
   bool asleep_ = false;

@@ -126,36 +126,41 @@ extern template class SoftBodyModel<3>;
 std::shared_ptr<const SoftBodyModel<3>> make_soft_body_model(const TriangleMesh& mesh,
                                                              const SoftBodySettings& settings);
 
-/// The strength of the material at a place of the mesh at rest (metres): a factor for the limits of SoftBodySettings::fracture. 0 or above,
-/// and finite.
-using StrengthField = std::function<float(const Eigen::Vector3f&)>;
+/// The strength of the material at a place of the mesh or lattice at rest (metres): a factor for the limits of SoftBodySettings::fracture.
+/// 0 or above, and finite. An empty function is 1 everywhere.
+/// @tparam kDimension  2 or 3
+template <int kDimension>
+using StrengthField = std::function<float(const Eigen::Vector<float, kDimension>&)>;
 
 /// The same for a body that breaks more easily in some places: the strength of a cell is that of its middle.
 /// @throws std::runtime_error  as above; a strength out of range.
 std::shared_ptr<const SoftBodyModel<3>> make_soft_body_model(const TriangleMesh& mesh,
                                                              const SoftBodySettings& settings,
-                                                             const StrengthField& strength);
+                                                             const StrengthField<3>& strength);
 
 /// A model without a mesh.
 /// @throws std::runtime_error  as validate() and find_regions(); a cell size that is not the lattice's
 ///         spacing.
 std::shared_ptr<const SoftBodyModel<3>> make_soft_body_model(Lattice<3> lattice,
                                                              const SoftBodySettings& settings);
+/// The same for a body that breaks more easily in some places: the strength of a cell is that of its middle.
+/// @throws std::runtime_error  as above; a strength out of range.
+std::shared_ptr<const SoftBodyModel<3>> make_soft_body_model(Lattice<3> lattice,
+                                                             const SoftBodySettings& settings,
+                                                             const StrengthField<3>& strength);
 
+/// A model in two dimensions.
 /// @param contact_radius_in_cells  above 0 and at most 1.
 /// @throws std::runtime_error  as above; a contact radius out of range.
 std::shared_ptr<const SoftBodyModel<2>> make_soft_body_model(
     Lattice<2> lattice, const SoftBodySettings& settings,
     float contact_radius_in_cells = SoftBodyModel<2>::kContactRadiusInCells);
 
-/// The strength of the material at a place of the lattice at rest (metres), as StrengthField in three dimensions.
-using StrengthField2d = std::function<float(const Eigen::Vector2f&)>;
-
 /// The same for a body that breaks more easily in some places: the strength of a cell is that of its middle.
 /// @throws std::runtime_error  as above; a strength out of range.
 std::shared_ptr<const SoftBodyModel<2>> make_soft_body_model(Lattice<2> lattice,
                                                              const SoftBodySettings& settings,
                                                              float contact_radius_in_cells,
-                                                             const StrengthField2d& strength);
+                                                             const StrengthField<2>& strength);
 
 }  // namespace softcell::ppu

@@ -76,7 +76,7 @@ class SurfaceQuery {
     std::uint32_t first = 0, count = 0;
   };
   struct Nearest {
-    float square;         ///< of the distance, m^2
+    float square = 0;     ///< of the distance, m^2
     float facing = -1;    ///< how squarely the face looks at the point, 0..1
     bool behind = false;  ///< the point is behind the face
     std::uint32_t face = 0;

@@ -3,9 +3,14 @@
 //
 //     const auto model = make_soft_body_model(tessellate(mesh, settings.cell_size), settings);
 
+#include <cstddef>
+
 #include "softcell/soft_bodies/mesh.h"
 
 namespace softcell::ppu {
+
+/// The most triangles of a mesh that tessellate() returns.
+inline constexpr std::size_t kMaxTessellatedTriangles = 2'000'000;
 
 /// Returns the same shape with no edge longer than `longest_edge`: longer edges are halved until none is left. Edges as long as a cell
 /// follow the lattice; shorter ones cost vertices without showing more.
@@ -16,7 +21,5 @@ namespace softcell::ppu {
 /// @param longest_edge  metres, above 0
 /// @throws std::invalid_argument  the length is not above 0 and finite; more than kMaxTessellatedTriangles would be needed; as validate()
 TriangleMesh tessellate(const TriangleMesh& mesh, float longest_edge);
-
-inline constexpr std::size_t kMaxTessellatedTriangles = 2'000'000;
 
 }  // namespace softcell::ppu

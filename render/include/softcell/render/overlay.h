@@ -25,10 +25,10 @@ class Overlay {
   /// The font's picture, valid as long as the overlay. @pre this is the current context
   OverlayFont font() const;
 
-  /// @param seconds  time since the last frame, above 0, for animations.
+  /// Begins a frame. @param width,height  of the picture, pixels  @param seconds  time since the last frame, above 0, for animations
   void begin(int width, int height, float seconds);
 
-  /// The mesh stays valid until the next begin().
+  /// Ends the frame. @return  what was drawn; valid until the next begin()
   const OverlayMesh& end();
 
   /// The texture to pass to ImGui::Image() and the like for a part of the sheet of pictures; see Renderer::draw_overlay().

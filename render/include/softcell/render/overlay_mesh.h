@@ -9,16 +9,16 @@ namespace softcell::render {
 
 /// A vertex as Dear ImGui makes it, in pixels from the upper left corner. [imgui.h, ImDrawVert] documented
 struct OverlayVertex {
-  float x, y;
-  float u, v;
-  std::uint32_t rgba;  ///< r in the lowest byte; encoded as on the screen
+  float x = 0, y = 0;
+  float u = 0, v = 0;      ///< in the font's picture or the sheet, 0..1
+  std::uint32_t rgba = 0;  ///< r in the lowest byte; encoded as on the screen
 };
 
 /// Triangles within a rectangle of the picture.
 struct OverlayCommand {
-  int left, top, right, bottom;  ///< pixels
-  std::uint32_t first_index;
-  std::uint32_t index_count;
+  int left = 0, top = 0, right = 0, bottom = 0;  ///< pixels; `right` and `bottom` are the first outside
+  std::uint32_t first_index = 0;
+  std::uint32_t index_count = 0;
   bool of_sheet = false;  ///< it uses the sheet of pictures, not the font
 };
 
