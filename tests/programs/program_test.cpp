@@ -136,9 +136,10 @@ TEST(Program, IsToldWhatItDidWhenTheProcessorStopsIt) {
   const struct {
     std::uint64_t how;
     const char *place, *message;
-  } cases[] = {{1, "traps.c:10", "the smallest integer by -1"},
-               {2, "traps.c:11", "jumped to address 0x00000, by a null pointer to a function"},
-               {3, "traps.c:12", "read from address 0x00000, by a null pointer"}};
+  } cases[] = {{1, "traps.c:15", "the smallest integer by -1"},
+               {2, "traps.c:16", "jumped to address 0x00000, by a null pointer to a function"},
+               {3, "traps.c:21", "read from address 0x00000, by a null pointer"},
+               {4, "traps.c:18", "accessed a vector at an address that is no multiple of 16"}};
   for (const auto& [how, place, message] : cases) {
     const Ended ended = run("traps", program("traps").plain, EntryArguments{.argp = how});
     ASSERT_TRUE(ended.result.fault) << how;

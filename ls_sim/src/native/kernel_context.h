@@ -58,7 +58,7 @@ constexpr std::uint32_t request_of(Operation operation, std::uint32_t channel = 
 /// How the processor stopped the kernel.
 struct Trap {
   int signal = 0;
-  bool general_protection = false;  ///< the processor gave no address: it was not a canonical one
+  bool general_protection = false;  ///< the processor gave no address: it was not that of an aligned vector
   bool instruction_fetch = false;
   bool write = false;
   /// Executed once more, the instruction did not fail: the processor had executed stale bytes.

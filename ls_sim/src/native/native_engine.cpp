@@ -614,8 +614,12 @@ dma::Fault NativeEngine::cause_of_trap() const {
 
 dma::Fault NativeEngine::memory_fault(const std::string& where) const {
   const native::Trap& trap = context_.trap;
+  // Pointers of 32 bits are all canonical.
   if (trap.general_protection) {
-    return fault(dma::Rule::kOutsideLocalStore, where + " used a pointer that is not a valid address");
+    return fault(dma::Rule::kOutsideLocalStore,
+                 where +
+                     " accessed a vector at an address that is no multiple of 16. An SPU ignores the lowest "
+                     "four bits of the address, the PC does not: clear them");
   }
   const char* const access = trap.instruction_fetch ? " jumped to "
                              : trap.write           ? " wrote to "

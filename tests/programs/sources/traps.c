@@ -1,13 +1,22 @@
-/* Fails as its second argument says: 1 divides the smallest integer by -1, 2 calls a null pointer, 3 reads by one. */
+/* Fails as its second argument says: 1 divides the smallest integer by -1, 2 calls a null pointer, 3 reads by one, 4 reads a vector
+ * that is not aligned. */
 #include <limits.h>
+#include <spu_intrinsics.h>
 
 static volatile int numerator = INT_MIN, divisor = -1;
 static int (*volatile function)(void);
 static volatile int* volatile place;
+static float floats[8] __attribute__((aligned(16)));
+static const float* volatile unaligned = floats + 1;
+static volatile vec_float4 loaded;
 
 int main(unsigned long long spe, unsigned long long how) {
   (void)spe;
   if (how == 1) return numerator / divisor;
   if (how == 2) return function() + 1;
+  if (how == 4) {
+    loaded = *(const vec_float4*)unaligned;
+    return 0;
+  }
   return *place;
 }
