@@ -177,7 +177,15 @@ Fault HostMemory::describe(EffectiveAddress ea, std::uint64_t bytes, SpeAccess w
                                             "; the upper word of EA is 0: was MFC_EAH left out, or a pointer "
                                             "cut to 32 bits?"};
     }
-    return {.rule = Rule::kEaNotMapped, .detail = "the program has nothing mapped there" + where};
+    const std::uint64_t exchanged = ea.value << 32 | ea.value >> 32;
+    const Region* const other = region_at(regions_, exchanged);
+    return {.rule = Rule::kEaNotMapped,
+            .detail = "the program has nothing mapped there" + where +
+                      (other == nullptr || other->access == SpeAccess::kNone
+                           ? ""
+                           : ", but at " + hex(exchanged) +
+                                 ": are the halves of EA exchanged? Word 0 of a union is the lower one on a "
+                                 "PC; use mfc_ea2h() and mfc_ea2l()")};
   }
   const std::string what = range_of(region->begin, region->end) +
                            (region->name.empty() ? std::string() : " (" + region->name + ")");

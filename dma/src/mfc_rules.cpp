@@ -171,8 +171,14 @@ std::optional<Breach> check(const MfcCommand& command, EffectiveAddress local_st
 std::optional<Breach> check(const MfcCommand& command, ListElement element, LocalStoreAddress cursor) {
   const std::uint32_t size = element.size();
   if (element.reserved() != 0) {
+    // stall:1, reserved:15, size:16 from the lowest bit on.
+    const bool from_the_lowest_bit =
+        (element.head & 0xFFFE) == 0 && element.head >> 16 <= kMaxTransferBytes && element.head >> 16 != 0;
     return Breach{Rule::kListElementReservedBits,
-                  "its first word is " + hex(element.head, 8) + "; bits 1 to 16 must be zero"};
+                  "its first word is " + hex(element.head, 8) + "; bits 1 to 16 must be zero" +
+                      (from_the_lowest_bit ? "; were bit fields written? On a PC they begin with the lowest "
+                                             "bit: write the word, or an mfc_list_element_t"
+                                           : "")};
   }
   if (size == 0) return std::nullopt;
   if (!is_legal_size(size)) return Breach{Rule::kListElementSize, size_detail(size)};

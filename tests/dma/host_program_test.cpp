@@ -110,6 +110,15 @@ TEST_F(HostProgramTest, WhatIsNotMappedIsAFault) {
   EXPECT_NE(detail_.find("MFC_EAH"), std::string::npos) << detail_;
   EXPECT_EQ(rule_of(reinterpret_cast<void*>(0x7000'0000'0000'0000), 16, SpeAccess::kRead),
             Rule::kEaNotMapped);
+  EXPECT_EQ(detail_.find("exchanged"), std::string::npos) << detail_;
+}
+
+/// What programs of the Cell SDK do: a union of a 64-bit number and two words, of which word 0 is the upper one on a Cell only.
+TEST_F(HostProgramTest, ExchangedHalvesOfAnAddressAreNamed) {
+  const Pages pages(1);
+  const std::uint64_t ea = ea_of(pages.begin()).value, exchanged = ea << 32 | ea >> 32;
+  EXPECT_EQ(rule_of(reinterpret_cast<void*>(exchanged), 16, SpeAccess::kRead), Rule::kEaNotMapped);
+  EXPECT_NE(detail_.find("are the halves of EA exchanged?"), std::string::npos) << detail_;
 }
 
 TEST_F(HostProgramTest, PermissionsOfThePagesHold) {

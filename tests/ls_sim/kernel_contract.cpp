@@ -60,6 +60,8 @@ SC_SAME_OPERATION(kAssist);
 SC_SAME_TOLD(kLoad);
 SC_SAME_TOLD(kStore);
 SC_SAME_TOLD(kHeapBlock);
+SC_SAME_TOLD(kLoadElsewhere);
+SC_SAME_TOLD(kStoreElsewhere);
 SC_SAME_TOLD(kFreedBlock);
 
 static_assert(assisted::kC99Call == kAssistedCalls + softcell_library::kC99);

@@ -2,6 +2,7 @@
 
 #include <elf.h>
 #include <gtest/gtest.h>
+#include <sys/mman.h>
 
 #include <algorithm>
 #include <bit>
@@ -136,15 +137,42 @@ TEST(Program, IsToldWhatItDidWhenTheProcessorStopsIt) {
   const struct {
     std::uint64_t how;
     const char *place, *message;
-  } cases[] = {{1, "traps.c:10", "the smallest integer by -1"},
-               {2, "traps.c:11", "jumped to address 0x00000, by a null pointer to a function"},
-               {3, "traps.c:12", "read from address 0x00000, by a null pointer"}};
+  } cases[] = {{1, "traps.c:15", "the smallest integer by -1"},
+               {2, "traps.c:16", "jumped to address 0x00000, by a null pointer to a function"},
+               {3, "traps.c:23", "read from address 0x00000, by a null pointer"},
+               {4, "traps.c:18", "accessed a vector at an address that is no multiple of 16"}};
   for (const auto& [how, place, message] : cases) {
     const Ended ended = run("traps", program("traps").plain, EntryArguments{.argp = how});
     ASSERT_TRUE(ended.result.fault) << how;
     EXPECT_EQ(ended.result.fault->place, place) << ended.result.fault->message();
     EXPECT_NE(ended.result.fault->detail.find(message), std::string::npos) << ended.result.fault->message();
   }
+}
+
+/// Effective addresses below 4 GB, as those of a program without position-independent code: the processor would let it pass.
+TEST(Program, IsToldOfALoadOrStoreInMainStorage) {
+  void* const page =
+      mmap(nullptr, 4096, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_32BIT, -1, 0);
+  ASSERT_NE(page, MAP_FAILED);
+  const auto ea = reinterpret_cast<std::uint64_t>(page);
+  const struct {
+    std::uint64_t how, ea;
+    const char *place, *message;
+  } cases[] = {{5, ea, "traps.c:21", "a load from address 0x"},
+               {6, ea + 8, "traps.c:22", "a store to address 0x"},
+               {5, 0, "traps.c:21", "read from address 0x00000, by a null pointer"}};
+  for (const auto& [how, address, place, message] : cases) {
+    Findings findings;
+    const Ended ended =
+        run("traps", program("traps").checked, EntryArguments{.argp = how, .envp = address}, &findings);
+    ASSERT_TRUE(ended.result.fault) << how;
+    EXPECT_EQ(ended.result.fault->rule, dma::Rule::kOutsideLocalStore);
+    EXPECT_EQ(ended.result.fault->place, place) << ended.result.fault->message();
+    EXPECT_NE(ended.result.fault->detail.find(message), std::string::npos) << ended.result.fault->message();
+    EXPECT_TRUE(findings.list().empty());
+  }
+  EXPECT_EQ(*static_cast<int*>(page), 0);
+  munmap(page, 4096);
 }
 
 TEST(Program, EndsItsStaticObjectsTheLastFirst) {

@@ -49,7 +49,14 @@ enum class Operation : std::uint32_t {
 };
 
 /// What Operation::kAccess reports, by the numbers of spu_kernels/sdk/checked/report.h.
-enum class Told : std::uint32_t { kLoad = 0, kStore = 1, kHeapBlock = 2, kFreedBlock = 3 };
+enum class Told : std::uint32_t {
+  kLoad = 0,
+  kStore = 1,
+  kHeapBlock = 2,
+  kFreedBlock = 3,
+  kLoadElsewhere = 4,
+  kStoreElsewhere = 5
+};
 
 constexpr std::uint32_t request_of(Operation operation, std::uint32_t channel = 0) {
   return static_cast<std::uint32_t>(operation) << 8 | channel;
@@ -58,7 +65,7 @@ constexpr std::uint32_t request_of(Operation operation, std::uint32_t channel = 
 /// How the processor stopped the kernel.
 struct Trap {
   int signal = 0;
-  bool general_protection = false;  ///< the processor gave no address: it was not a canonical one
+  bool general_protection = false;  ///< the processor gave no address: it was not that of an aligned vector
   bool instruction_fetch = false;
   bool write = false;
   /// Executed once more, the instruction did not fail: the processor had executed stale bytes.

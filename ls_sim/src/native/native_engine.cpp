@@ -1,4 +1,6 @@
 #include <pthread.h>
+#include <sys/uio.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
@@ -38,6 +40,13 @@ void require_vector_units(bool avx2, bool fma) {
 }
 
 namespace {
+
+/// Whether a load from there would succeed. A host that forbids the question says no.
+bool can_be_read(std::uint32_t address) {
+  std::byte byte{};
+  const iovec to{&byte, 1}, from{reinterpret_cast<void*>(std::uintptr_t{address}), 1};
+  return process_vm_readv(getpid(), &to, 1, &from, 1, 0) == 1;
+}
 
 using native::KernelContext;
 using native::Operation;
@@ -155,7 +164,7 @@ class NativeEngine final : public Engine {
   bool serve_request() noexcept;
   std::optional<RunResult> answer();
   std::optional<RunResult> answer_assist();
-  void tell_of_access();
+  std::optional<dma::Fault> tell_of_access();
   std::optional<dma::Fault> mark_job();
   std::optional<dma::Fault> end_job();
   /// Breakpoints of a debugger are written into the code.
@@ -332,7 +341,7 @@ std::optional<RunResult> NativeEngine::answer() {
       return RunResult{
           0, fault(dma::Rule::kKernelHalt, "a halt-on-condition instruction found its condition true")};
     case Operation::kAccess:
-      tell_of_access();
+      if (auto elsewhere = tell_of_access()) return RunResult{0, std::move(elsewhere)};
       return std::nullopt;
     case Operation::kJob:
       if (auto overflow = mark_job()) return RunResult{0, std::move(overflow)};
@@ -372,13 +381,23 @@ std::optional<RunResult> NativeEngine::answer_assist() {
   return RunResult{code, std::nullopt, {}};
 }
 
-void NativeEngine::tell_of_access() {
-  if (accesses_ == nullptr) return;
+/// Of a checked kernel. What the processor would let pass, and an SPU would not do, ends the run.
+std::optional<dma::Fault> NativeEngine::tell_of_access() {
   const auto what = static_cast<Told>(context_.channel());
+  if (what == Told::kLoadElsewhere || what == Told::kStoreElsewhere) {
+    if (!can_be_read(context_.value)) return std::nullopt;  // the processor stops it
+    return fault(
+        dma::Rule::kOutsideLocalStore,
+        std::string(what == Told::kStoreElsewhere ? "a store to" : "a load from") + " address " +
+            base::hex(context_.value, 8) +
+            ", which is not in the local store: an SPU reaches the memory of the PPU side by DMA only");
+  }
+  if (accesses_ == nullptr) return std::nullopt;
   if (what == Told::kHeapBlock || what == Told::kFreedBlock)
     accesses_->on_heap_block(requested_access(), what == Told::kFreedBlock);
   else
     accesses_->on_access(requested_access());
+  return std::nullopt;
 }
 
 /// The kernel marks that it calls a job, or that the job has returned. A job's image lies at the bottom of the local store, its stack below

@@ -66,8 +66,11 @@ dma::Fault fault_of_instruction(const Trap& trap, const std::byte* local_store, 
   if (trap.signal == SIGFPE)
     return fault(dma::Rule::kIllegalInstruction,
                  " divides an integer by zero, or the smallest integer by -1, whose quotient has no place");
-  if (trap.general_protection)
-    return fault(dma::Rule::kOutsideLocalStore, " used a pointer that is not a valid address");
+  if (trap.general_protection)  // pointers of 32 bits are all canonical
+    return fault(
+        dma::Rule::kOutsideLocalStore,
+        " accessed a vector at an address that is no multiple of 16. An SPU ignores the lowest four bits "
+        "of the address, the PC does not: clear them");
   const std::string did = trap.instruction_fetch ? " jumped to " : trap.write ? " wrote to " : " read from ";
   if (trap.address == 0)
     return fault(dma::Rule::kOutsideLocalStore, did + "address " + base::hex(0, 5) + ", by a null pointer" +

@@ -161,7 +161,9 @@ SC_C_SPLAT(vec_double2, double)
             : SC_C_LIKE(b, vec_double2), default    \
             : softcell_c_nothing)(b))
 
-/* Each operand is evaluated, and written out, once: macros in macros would grow without bound. */
+/* Each operand is evaluated, and written out, once: macros in macros would grow without bound. It comes in parentheses, as an SPU's
+ * compiler has functions here: what a program's macro expands to, such as (vec_uchar16){0, 1, ...}, has commas that separate no arguments.
+ */
 #define SC_C_CALL1(list, f, a)                                          \
   __extension__({                                                       \
     __auto_type sc_1 = (a);                                             \
@@ -244,17 +246,17 @@ SC_C_SPLAT(vec_double2, double)
     __auto_type sc_1 = (s);                      \
     SC_C_PICK(SC_C_SCALARS, splats, sc_1)(sc_1); \
   })
-#define spu_promote(s, element) (((void)(element), spu_splats(s)))
+#define spu_promote(s, element) (((void)(element), spu_splats((s))))
 #define spu_insert(s, a, element)                                   \
   __extension__({                                                   \
     __auto_type sc_1 = (s);                                         \
     __auto_type sc_2 = (a);                                         \
     SC_C_PICK(SC_C_CASES_ALL, insert, sc_2)(sc_1, sc_2, (element)); \
   })
-#define spu_extract(a, element) SC_C_CALL2_INT(SC_C_CASES_ALL, extract, a, element)
+#define spu_extract(a, element) SC_C_CALL2_INT(SC_C_CASES_ALL, extract, (a), (element))
 
 /* Conversions; the scale is an immediate. */
-#define spu_convtf(a, scale) SC_C_CALL2_INT(SC_C_CASES_32, convtf, a, SC_C_CONSTANT(scale, 0, 127))
+#define spu_convtf(a, scale) SC_C_CALL2_INT(SC_C_CASES_32, convtf, (a), SC_C_CONSTANT(scale, 0, 127))
 #define spu_convts(a, scale) (softcell_c_convts_vec_float4((a), SC_C_CONSTANT(scale, 0, 127)))
 #define spu_convtu(a, scale) (softcell_c_convtu_vec_float4((a), SC_C_CONSTANT(scale, 0, 127)))
 #define SC_C_CASES_EXTENDED(f)                                              \
@@ -262,13 +264,13 @@ SC_C_SPLAT(vec_double2, double)
   SC_C_NAME(f, vec_char16), vec_short8 : SC_C_NAME(f, vec_short8),          \
                                          vec_int4 : SC_C_NAME(f, vec_int4), \
                                                     vec_float4 : SC_C_NAME(f, vec_float4)
-#define spu_extend(a) SC_C_CALL1(SC_C_CASES_EXTENDED, extend, a)
+#define spu_extend(a) SC_C_CALL1(SC_C_CASES_EXTENDED, extend, (a))
 #define spu_roundtf(a) (softcell_c_roundtf_vec_double2(a))
 
 /* Arithmetic. */
 #define SC_C_CASES_SUMS(f) SC_C_CASES_16_32(f), SC_C_CASES_REAL(f)
 #define SC_C_CASES_FUSED(f) SC_C_CASES_REAL(f), vec_short8 : SC_C_NAME(f, vec_short8)
-#define spu_add(a, b) SC_C_CALL2_LIKE(SC_C_CASES_SUMS, add, a, b)
+#define spu_add(a, b) SC_C_CALL2_LIKE(SC_C_CASES_SUMS, add, (a), (b))
 #define spu_sub(a, b)                                                                                        \
   __extension__({                                                                                            \
     __auto_type sc_1 = (a);                                                                                  \
@@ -279,22 +281,22 @@ SC_C_SPLAT(vec_double2, double)
                                                   sc_2),                                                     \
             sc_2);                                                                                           \
   })
-#define spu_addx(a, b, c) SC_C_CALL3(SC_C_CASES_32, addx, a, b, c)
-#define spu_subx(a, b, c) SC_C_CALL3(SC_C_CASES_32, subx, a, b, c)
-#define spu_gencx(a, b, c) SC_C_CALL3(SC_C_CASES_32, gencx, a, b, c)
-#define spu_genbx(a, b, c) SC_C_CALL3(SC_C_CASES_32, genbx, a, b, c)
-#define spu_genc(a, b) SC_C_CALL2(SC_C_CASES_32, genc, a, b)
-#define spu_genb(a, b) SC_C_CALL2(SC_C_CASES_32, genb, a, b)
-#define spu_mul(a, b) SC_C_CALL2(SC_C_CASES_REAL, mul, a, b)
-#define spu_madd(a, b, c) SC_C_CALL3_AND(SC_C_CASES_FUSED, madd, a, b, c, SC_C_SUM_OF_HALVES)
-#define spu_msub(a, b, c) SC_C_CALL3(SC_C_CASES_REAL, msub, a, b, c)
-#define spu_nmsub(a, b, c) SC_C_CALL3(SC_C_CASES_REAL, nmsub, a, b, c)
+#define spu_addx(a, b, c) SC_C_CALL3(SC_C_CASES_32, addx, (a), (b), (c))
+#define spu_subx(a, b, c) SC_C_CALL3(SC_C_CASES_32, subx, (a), (b), (c))
+#define spu_gencx(a, b, c) SC_C_CALL3(SC_C_CASES_32, gencx, (a), (b), (c))
+#define spu_genbx(a, b, c) SC_C_CALL3(SC_C_CASES_32, genbx, (a), (b), (c))
+#define spu_genc(a, b) SC_C_CALL2(SC_C_CASES_32, genc, (a), (b))
+#define spu_genb(a, b) SC_C_CALL2(SC_C_CASES_32, genb, (a), (b))
+#define spu_mul(a, b) SC_C_CALL2(SC_C_CASES_REAL, mul, (a), (b))
+#define spu_madd(a, b, c) SC_C_CALL3_AND(SC_C_CASES_FUSED, madd, (a), (b), (c), SC_C_SUM_OF_HALVES)
+#define spu_msub(a, b, c) SC_C_CALL3(SC_C_CASES_REAL, msub, (a), (b), (c))
+#define spu_nmsub(a, b, c) SC_C_CALL3(SC_C_CASES_REAL, nmsub, (a), (b), (c))
 #define spu_nmadd(a, b, c) (softcell_c_nmadd_vec_double2((a), (b), (c)))
-#define spu_mule(a, b) SC_C_CALL2(SC_C_CASES_16, mule, a, b)
-#define spu_mulo(a, b) SC_C_CALL2_LIKE(SC_C_CASES_16, mulo, a, b)
+#define spu_mule(a, b) SC_C_CALL2(SC_C_CASES_16, mule, (a), (b))
+#define spu_mulo(a, b) SC_C_CALL2_LIKE(SC_C_CASES_16, mulo, (a), (b))
 #define spu_mulh(a, b) (softcell_c_mulh_vec_short8((a), (b)))
 #define spu_mulsr(a, b) (softcell_c_mulsr_vec_short8((a), (b)))
-#define spu_mhhadd(a, b, c) SC_C_CALL3_AND(SC_C_CASES_16, mhhadd, a, b, c, SC_C_SUM_OF_HALVES)
+#define spu_mhhadd(a, b, c) SC_C_CALL3_AND(SC_C_CASES_16, mhhadd, (a), (b), (c), SC_C_SUM_OF_HALVES)
 #define spu_re(a) (softcell_c_re_vec_float4(a))
 #define spu_rsqrte(a) (softcell_c_rsqrte_vec_float4(a))
 
@@ -305,11 +307,11 @@ SC_C_SPLAT(vec_double2, double)
 
 /* Comparisons; halts. */
 #define SC_C_CASES_COMPARED(f) SC_C_CASES_8_16_32(f), SC_C_CASES_REAL(f)
-#define spu_cmpeq(a, b) SC_C_CALL2_LIKE(SC_C_CASES_COMPARED, cmpeq, a, b)
-#define spu_cmpgt(a, b) SC_C_CALL2_LIKE(SC_C_CASES_COMPARED, cmpgt, a, b)
+#define spu_cmpeq(a, b) SC_C_CALL2_LIKE(SC_C_CASES_COMPARED, cmpeq, (a), (b))
+#define spu_cmpgt(a, b) SC_C_CALL2_LIKE(SC_C_CASES_COMPARED, cmpgt, (a), (b))
 #define spu_testsv(a, kinds) (softcell_c_testsv_vec_double2((a), SC_C_CONSTANT(kinds, 0, 0x7F)))
-#define spu_cmpabseq(a, b) SC_C_CALL2(SC_C_CASES_REAL, cmpabseq, a, b)
-#define spu_cmpabsgt(a, b) SC_C_CALL2(SC_C_CASES_REAL, cmpabsgt, a, b)
+#define spu_cmpabseq(a, b) SC_C_CALL2(SC_C_CASES_REAL, cmpabseq, (a), (b))
+#define spu_cmpabsgt(a, b) SC_C_CALL2(SC_C_CASES_REAL, cmpabsgt, (a), (b))
 SC_C_INLINE void softcell_halt_if(int condition) {
   if (condition) softcell_call_gate(softcell_halt, 0, 0);
 }
@@ -319,25 +321,25 @@ SC_C_INLINE void softcell_halt_if(int condition) {
 /* Bits and masks. */
 #define SC_C_CASES_COUNTED(f) SC_C_CASES_32(f), vec_float4 : SC_C_NAME(f, vec_float4)
 #define SC_C_CASES_GATHERED(f) SC_C_CASES_8_16_32(f), vec_float4 : SC_C_NAME(f, vec_float4)
-#define spu_cntb(a) SC_C_CALL1(SC_C_CASES_8, cntb, a)
-#define spu_cntlz(a) SC_C_CALL1(SC_C_CASES_COUNTED, cntlz, a)
-#define spu_gather(a) SC_C_CALL1(SC_C_CASES_GATHERED, gather, a)
+#define spu_cntb(a) SC_C_CALL1(SC_C_CASES_8, cntb, (a))
+#define spu_cntlz(a) SC_C_CALL1(SC_C_CASES_COUNTED, cntlz, (a))
+#define spu_gather(a) SC_C_CALL1(SC_C_CASES_GATHERED, gather, (a))
 #define spu_maskb(a) (softcell_c_maskb_int(a))
 #define spu_maskh(a) (softcell_c_maskh_int(a))
 #define spu_maskw(a) (softcell_c_maskw_int(a))
-#define spu_orx(a) SC_C_CALL1(SC_C_CASES_32, orx, a)
-#define spu_sel(a, b, c) SC_C_CALL3_AND(SC_C_CASES_ALL, sel, a, b, c, SC_C_MASK)
-#define spu_shuffle(a, b, c) SC_C_CALL3_AND(SC_C_CASES_ALL, shuffle, a, b, c, SC_C_PATTERN)
+#define spu_orx(a) SC_C_CALL1(SC_C_CASES_32, orx, (a))
+#define spu_sel(a, b, c) SC_C_CALL3_AND(SC_C_CASES_ALL, sel, (a), (b), (c), SC_C_MASK)
+#define spu_shuffle(a, b, c) SC_C_CALL3_AND(SC_C_CASES_ALL, shuffle, (a), (b), (c), SC_C_PATTERN)
 
 /* Logic. */
-#define spu_and(a, b) SC_C_CALL2_LIKE(SC_C_CASES_ALL, and, a, b)
-#define spu_or(a, b) SC_C_CALL2_LIKE(SC_C_CASES_ALL, or, a, b)
-#define spu_xor(a, b) SC_C_CALL2_LIKE(SC_C_CASES_ALL, xor, a, b)
-#define spu_andc(a, b) SC_C_CALL2(SC_C_CASES_ALL, andc, a, b)
-#define spu_orc(a, b) SC_C_CALL2(SC_C_CASES_ALL, orc, a, b)
-#define spu_nand(a, b) SC_C_CALL2(SC_C_CASES_ALL, nand, a, b)
-#define spu_nor(a, b) SC_C_CALL2(SC_C_CASES_ALL, nor, a, b)
-#define spu_eqv(a, b) SC_C_CALL2(SC_C_CASES_ALL, eqv, a, b)
+#define spu_and(a, b) SC_C_CALL2_LIKE(SC_C_CASES_ALL, and, (a), (b))
+#define spu_or(a, b) SC_C_CALL2_LIKE(SC_C_CASES_ALL, or, (a), (b))
+#define spu_xor(a, b) SC_C_CALL2_LIKE(SC_C_CASES_ALL, xor, (a), (b))
+#define spu_andc(a, b) SC_C_CALL2(SC_C_CASES_ALL, andc, (a), (b))
+#define spu_orc(a, b) SC_C_CALL2(SC_C_CASES_ALL, orc, (a), (b))
+#define spu_nand(a, b) SC_C_CALL2(SC_C_CASES_ALL, nand, (a), (b))
+#define spu_nor(a, b) SC_C_CALL2(SC_C_CASES_ALL, nor, (a), (b))
+#define spu_eqv(a, b) SC_C_CALL2(SC_C_CASES_ALL, eqv, (a), (b))
 
 /* Shifts and rotations of lanes, by a vector of counts or by one scalar. */
 #define SC_C_SHIFT(f, a, b)                                           \
@@ -351,27 +353,27 @@ SC_C_INLINE void softcell_halt_if(int condition) {
              : SC_C_PICK(SC_C_CASES_16_32, f, sc_1), default          \
              : SC_C_PICK(SC_C_CASES_16_32, f##_n, sc_1))(sc_1, sc_2); \
   })
-#define spu_sl(a, b) SC_C_SHIFT(sl, a, b)
-#define spu_sr(a, b) SC_C_SHIFT(sr, a, b)
-#define spu_sra(a, b) SC_C_SHIFT(sra, a, b)
-#define spu_rl(a, b) SC_C_SHIFT(rl, a, b)
-#define spu_rlmask(a, b) SC_C_SHIFT(rlmask, a, b)
-#define spu_rlmaska(a, b) SC_C_SHIFT(rlmaska, a, b)
+#define spu_sl(a, b) SC_C_SHIFT(sl, (a), (b))
+#define spu_sr(a, b) SC_C_SHIFT(sr, (a), (b))
+#define spu_sra(a, b) SC_C_SHIFT(sra, (a), (b))
+#define spu_rl(a, b) SC_C_SHIFT(rl, (a), (b))
+#define spu_rlmask(a, b) SC_C_SHIFT(rlmask, (a), (b))
+#define spu_rlmaska(a, b) SC_C_SHIFT(rlmaska, (a), (b))
 
 /* Shifts and rotations of the quadword. */
 #define SC_C_QUADWORD(f, a, n) SC_C_CALL2_INT(SC_C_CASES_ALL, f, a, (int)(n))
-#define spu_slqw(a, n) SC_C_QUADWORD(slqw, a, n)
-#define spu_slqwbyte(a, n) SC_C_QUADWORD(slqwbyte, a, n)
-#define spu_slqwbytebc(a, n) SC_C_QUADWORD(slqwbytebc, a, n)
-#define spu_srqw(a, n) SC_C_QUADWORD(srqw, a, n)
-#define spu_srqwbyte(a, n) SC_C_QUADWORD(srqwbyte, a, n)
-#define spu_srqwbytebc(a, n) SC_C_QUADWORD(srqwbytebc, a, n)
-#define spu_rlqw(a, n) SC_C_QUADWORD(rlqw, a, n)
-#define spu_rlqwbyte(a, n) SC_C_QUADWORD(rlqwbyte, a, n)
-#define spu_rlqwbytebc(a, n) SC_C_QUADWORD(rlqwbytebc, a, n)
-#define spu_rlmaskqw(a, n) SC_C_QUADWORD(rlmaskqw, a, n)
-#define spu_rlmaskqwbyte(a, n) SC_C_QUADWORD(rlmaskqwbyte, a, n)
-#define spu_rlmaskqwbytebc(a, n) SC_C_QUADWORD(rlmaskqwbytebc, a, n)
+#define spu_slqw(a, n) SC_C_QUADWORD(slqw, (a), (n))
+#define spu_slqwbyte(a, n) SC_C_QUADWORD(slqwbyte, (a), (n))
+#define spu_slqwbytebc(a, n) SC_C_QUADWORD(slqwbytebc, (a), (n))
+#define spu_srqw(a, n) SC_C_QUADWORD(srqw, (a), (n))
+#define spu_srqwbyte(a, n) SC_C_QUADWORD(srqwbyte, (a), (n))
+#define spu_srqwbytebc(a, n) SC_C_QUADWORD(srqwbytebc, (a), (n))
+#define spu_rlqw(a, n) SC_C_QUADWORD(rlqw, (a), (n))
+#define spu_rlqwbyte(a, n) SC_C_QUADWORD(rlqwbyte, (a), (n))
+#define spu_rlqwbytebc(a, n) SC_C_QUADWORD(rlqwbytebc, (a), (n))
+#define spu_rlmaskqw(a, n) SC_C_QUADWORD(rlmaskqw, (a), (n))
+#define spu_rlmaskqwbyte(a, n) SC_C_QUADWORD(rlmaskqwbyte, (a), (n))
+#define spu_rlmaskqwbytebc(a, n) SC_C_QUADWORD(rlmaskqwbytebc, (a), (n))
 
 /* Control and channels. */
 #define spu_readch(channel) (softcell_call_gate(softcell_read, SC_C_CONSTANT(channel, 0, 127), 0))

@@ -140,8 +140,8 @@ SC_C_INLINE qword* softcell_quadword_at(uint32_t address) {
 #define si_lqd(a, imm) (*softcell_quadword_at((a)[0] + (uint32_t)SC_C_CONSTANT(imm, -0x2000, 0x1FFF)))
 #define si_lqx(a, b) (*softcell_quadword_at((a)[0] + (b)[0]))
 #define si_lqa(imm) (*softcell_quadword_at((uint32_t)SC_C_CONSTANT(imm, 0, 0x3FFFF)))
-#define si_stqd(t, a, imm) ((void)(si_lqd(a, imm) = (t)))
-#define si_stqx(t, a, b) ((void)(si_lqx(a, b) = (t)))
+#define si_stqd(t, a, imm) ((void)(si_lqd((a), imm) = (t)))
+#define si_stqx(t, a, b) ((void)(si_lqx((a), (b)) = (t)))
 #define si_stqa(t, imm) ((void)(si_lqa(imm) = (t)))
 
 #define si_cbd(a, imm) \

@@ -30,8 +30,8 @@ static_assert(sizeof(Environment) == 128, "what the link script leaves free");
 
 /// What is asked of the gate: operation = kind << 8 | channel. `value` is what is written, or the stop code.
 /// kTagStatus writes `value` to MFC_WrTagUpdate and then reads MFC_RdTagStat: one call for each wait.
-/// kAccess, with 1 as the channel for a store, reports a load or store of a checked kernel at local-store
-/// address `value`. kJob says that a job begins (1 as the channel) or has ended. kSync
+/// kAccess reports a load or store of a checked kernel: its direction (checked/report.h) as the channel, and its
+/// address as the value. kJob says that a job begins (1 as the channel) or has ended. kSync
 /// makes the processor fetch anew what it executes. kAssist stops with code 0x2100 + channel, which calls a
 /// function of the PPU side; `value` is its number in the upper 8 bits, and the local-store address of its
 /// arguments, a quadword each.

@@ -1,6 +1,7 @@
 #pragma once
 // The operators that compilers of the SPU have for vectors, as for scalars lane by lane; comparisons give -1 or 0 in lanes of
-// the same width. Operands are two vectors of one type, or one and a scalar that is converted to its lane.
+// the same width. Operands are two vectors of one type, or one and a scalar that is converted to its lane. Integers of both signs give
+// unsigned ones.
 // [GCC, vector extensions] documented
 
 #include "softcell_compare.h"
@@ -103,6 +104,35 @@ SC_SDK_INLINE Vector<T_> operator-(Vector<T_> a_) {
   }
 }
 
+template <class T_, class U_>
+inline constexpr bool kOfOtherSign = sizeof(T_) == sizeof(U_) && !kFloating<T_> && !kFloating<U_> &&
+                                     (T_(-1) < T_(0)) != (U_(-1) < U_(0));
+#define SC_SDK_BOTH_SIGNS(op)                                    \
+  template <class T_, class U_, If<kOfOtherSign<T_, U_>> = 0>    \
+  SC_SDK_INLINE auto operator op(Vector<T_> a_, Vector<U_> b_) { \
+    return Vector<Unsigned<T_>>(a_) op Vector<Unsigned<T_>>(b_); \
+  }
+SC_SDK_BOTH_SIGNS(+)
+SC_SDK_BOTH_SIGNS(-)
+SC_SDK_BOTH_SIGNS(*)
+SC_SDK_BOTH_SIGNS(/)
+SC_SDK_BOTH_SIGNS(%)
+SC_SDK_BOTH_SIGNS(&)
+SC_SDK_BOTH_SIGNS(|)
+SC_SDK_BOTH_SIGNS(^)
+SC_SDK_BOTH_SIGNS(==)
+SC_SDK_BOTH_SIGNS(!=)
+#undef SC_SDK_BOTH_SIGNS
+// A shift has the sign of what is shifted.
+template <class T_, class U_, If<kOfOtherSign<T_, U_>> = 0>
+SC_SDK_INLINE Vector<T_> operator<<(Vector<T_> a_, Vector<U_> b_) {
+  return a_ << Vector<T_>(b_);
+}
+template <class T_, class U_, If<kOfOtherSign<T_, U_>> = 0>
+SC_SDK_INLINE Vector<T_> operator>>(Vector<T_> a_, Vector<U_> b_) {
+  return a_ >> Vector<T_>(b_);
+}
+
 // One operand a scalar; and assignments, to volatile vectors too.
 #define SC_SDK_WITH_SCALAR(op)                                   \
   template <class T_>                                            \
@@ -164,3 +194,8 @@ SC_SDK_INLINE Vector<T_> operator--(Vector<T_>& a_, int) {
 }
 
 }  // namespace softcell_sdk
+
+SC_SDK_INLINE qword operator&(qword a_, qword b_) { return qword(vec_uint4(a_) & vec_uint4(b_)); }
+SC_SDK_INLINE qword operator|(qword a_, qword b_) { return qword(vec_uint4(a_) | vec_uint4(b_)); }
+SC_SDK_INLINE qword operator^(qword a_, qword b_) { return qword(vec_uint4(a_) ^ vec_uint4(b_)); }
+SC_SDK_INLINE qword operator~(qword a_) { return qword(~vec_uint4(a_)); }

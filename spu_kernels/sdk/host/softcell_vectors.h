@@ -154,7 +154,7 @@ using vec_float4 = softcell_sdk::Vector<float>;
 using vec_double2 = softcell_sdk::Vector<double>;
 
 /// A register without a type, for the specific intrinsics (si_*). In memory it is a vector of words; casts do
-/// the rest.
+/// the rest. For an SPU's compiler it is a vec_char16, and needs no casts to and from one.
 struct SC_SDK_REGISTER qword {
   static constexpr int kWidth = 4;
   mutable softcell_sdk::Raw<unsigned int> raw;
@@ -162,6 +162,8 @@ struct SC_SDK_REGISTER qword {
   qword() = default;
   template <class T_>
   SC_SDK_INLINE explicit qword(const softcell_sdk::Vector<T_>& v_) : raw(vec_uint4(v_).raw) {}
+  SC_SDK_INLINE qword(const vec_char16& v_) : raw(vec_uint4(v_).raw) {}
+  SC_SDK_INLINE operator vec_char16() const { return vec_char16(*this); }
 };
 
 namespace softcell_sdk {

@@ -125,6 +125,37 @@ TEST(Attachments, APieceThatSleepsFollowsWhatItHangsFrom) {
   EXPECT_LT(piece.centre_of_mass().y(), before - 0.5f) << "both fall";
 }
 
+/// The program may move a static or kinematic body so slowly that what hangs from it counts as resting.
+TEST(Attachments, WhatSleepsFollowsTheRigidBodyThatTheProgramMoves) {
+  for (const bool is_kinematic : {false, true}) {
+    SCOPED_TRACE(is_kinematic);
+    AttachedWorld w(Who::kPpu);
+    w.bodies.let_sleep(SleepSettings{.seconds = 0.5f});
+    btRigidBody& beam = w.add(std::make_unique<btBoxShape>(btVector3(0.5f, 0.1f, 0.5f)), 0, {0, 2, 0});
+    if (is_kinematic) {
+      beam.setCollisionFlags(beam.getCollisionFlags() | btCollisionObject::CF_KINEMATIC_OBJECT);
+      beam.setActivationState(DISABLE_DEACTIVATION);
+    }
+    const SoftBody<3>& body = w.add(block({0.6f, 0.3f, 0.3f}), stiff(), {0, 1.75f, 0});
+    w.bodies.attach(body, Patch<3>::of_surface({0, 1.9f, 0}, 0.2f), beam);
+    w.run(240);
+    ASSERT_TRUE(body.asleep());
+    const float before = body.centre_of_mass().y();
+    bool slept = false;
+    for (int frame = 1; frame <= 300; ++frame) {
+      btTransform there = beam.getWorldTransform();
+      there.setOrigin({0, 2 + 0.1f * static_cast<float>(frame) / 300, 0});
+      beam.setWorldTransform(there);
+      w.run(1);
+      slept |= body.asleep();
+    }
+    EXPECT_FALSE(slept);
+    EXPECT_NEAR(body.centre_of_mass().y(), before + 0.1f, 0.005f);
+    w.run(120);
+    EXPECT_TRUE(body.asleep());
+  }
+}
+
 TEST(Attachments, WhatIsAttachedSleepsAndWakesTogether) {
   ContactWorld w;
   w.bodies.let_sleep(SleepSettings{.speed = 0.1f, .seconds = 0.2f});

@@ -47,6 +47,18 @@ bool vectors_have_operators() {
   x -= 0.5f;
   const Particle p = {x, (vec_uint4)(x > 0.75f)};
   Quadword q, copy;
+  const vec_uint4 mask = spu_cmpgt(x, spu_splats(0.75f));
+  const vec_uint4 both = mask & b, other = b | mask;  // of both signs
+  const vec_int4 half = a >> (vec_uint4){1, 1, 1, 1}, same = a == (vec_uint4)a;
+  if (both[0] != 0 || both[2] != 1 || other[1] != 1 || other[3] != 0xFFFFFFFF) return false;
+  if (half[0] != -1 || half[3] != 4 || same[2] != -1) return false;
+  if (si_to_uint((si_from_uint(6) & ~si_from_uint(4)) | si_from_uint(8)) != 10) return false;
+  const vec_uint4 bytes_of_words = {0x01020304, 0x05060708, 0x090A0B0C, 0x0D0E0F10};
+  const vec_char16 byte_lanes = si_from_uint(0x01020304);
+  if (byte_lanes[1] != 2 || si_to_uint(si_ai(byte_lanes, 1)) != 0x01020305) return false;
+  const qword pair = spu_slqwbyte((qword)bytes_of_words, 4), same_pair = pair;
+  if (si_to_uint(pair) != 0x05060708 || spu_extract(pair, 1) != 6) return false;
+  if (spu_extract(spu_gather(spu_cmpeq(pair, same_pair)), 0) != 0xFFFF) return false;
   q.v = (vec_uint4)a;
   copy = q;
   return v[3] == 7 && c[15] == 'B' && a[0] == -2 && a[3] == 8 && b[0] == 8 && b[1] == 1 && b[3] == 3 &&

@@ -83,6 +83,25 @@ static void intrinsics(void) {
   CHECK(si_to_float(si_fm(si_from_float(1.5f), si_from_float(2.0f))) == 3.0f);
 }
 
+/* Commas of a program's macro: the intrinsics of an SPU's compiler are functions. */
+#define WORDS_1032 \
+  (vec_uchar16) { 4, 5, 6, 7, 0, 1, 2, 3, 12, 13, 14, 15, 8, 9, 10, 11 }
+#define ONES \
+  (vec_uint4) { 1, 1, 1, 1 }
+#define FLOATS \
+  (vec_float4) { 1, 2, 3, 4 }
+static void literals_of_macros(void) {
+  const vec_uint4 words = {1, 2, 3, 4};
+  CHECK(spu_extract(spu_shuffle(words, words, WORDS_1032), 2) == 4);
+  CHECK(spu_extract(ONES, 3) == 1 && spu_extract(spu_add(ONES, words), 1) == 3 && spu_extract(spu_sub(words, ONES), 3) == 3);
+  CHECK(spu_extract(spu_madd(FLOATS, FLOATS, FLOATS), 3) == 20 && spu_extract(spu_mul(FLOATS, FLOATS), 1) == 4);
+  CHECK(spu_extract(spu_sel(words, ONES, spu_cmpgt(words, ONES)), 2) == 1 && spu_extract(spu_sl(words, ONES), 3) == 8);
+  CHECK(spu_extract(spu_rlqwbyte(FLOATS, 4), 0) == 2 && spu_extract(spu_convts(FLOATS, 1), 0) == 2);
+  CHECK(spu_extract(spu_insert(7u, ONES, 2), 2) == 7 && spu_extract(spu_splats(spu_extract(FLOATS, 1)), 3) == 2);
+  CHECK(spu_extract(spu_gather(spu_cmpeq(ONES, ONES)), 0) == 15);
+  CHECK(si_to_uint(si_a((qword)ONES, (qword)ONES)) == 2 && spu_extract(spu_or(ONES, spu_promote(6u, 0)), 0) == 7);
+}
+
 static void doubles(void) {
   const vec_double2 v = {-0.0, 1.0 / 0.0}, w = {0.0 / 0.0, -2.5};
   CHECK(spu_extract(spu_testsv(v, SPU_SV_NEG_ZERO | SPU_SV_NAN), 0) == ~0ull &&
@@ -104,6 +123,7 @@ int main(unsigned long long id, unsigned long long argp, unsigned long long envp
   operators();
   casts();
   intrinsics();
+  literals_of_macros();
   doubles();
   memory(argp);
   return failures;

@@ -7,10 +7,12 @@
 #include <cstdio>
 #include <fstream>
 #include <iostream>
+#include <set>
 #include <sstream>
 #include <stdexcept>
 #include <string_view>
 
+#include "missing_headers.h"
 #include "toolchain_settings.h"
 
 namespace softcell::toolchain {
@@ -102,6 +104,24 @@ void print_command(const Options& options, const Words& command) {
   std::fprintf(stderr, "%s\n", text.c_str());
 }
 
+/// Says why SPU programs do not have the headers that the preprocessor has not found. With -MG it names them as the sources do.
+void explain_missing_headers(Words command, const std::string& source) {
+  if (source == kStandardInput) return;
+  append(command, {"-M", "-MG", source});
+  std::string names;
+  try {
+    names = output_of(command, true);
+  } catch (const Failed&) {
+    return;  // there are other errors, which it has printed before
+  }
+  std::istringstream words(names);
+  std::set<std::string> known;
+  for (std::string name; words >> name;) {
+    if (const auto why = why_missing(name); why && known.insert(name).second)
+      std::fprintf(stderr, "%s: note: %s\n", source.c_str(), why->c_str());
+  }
+}
+
 void compile_build(const Input& source, const std::filesystem::path& object, bool checked,
                    const Words& preprocessor, const Options& options, const Places& places,
                    ScratchFolder& scratch) {
@@ -122,8 +142,14 @@ void compile_build(const Input& source, const std::filesystem::path& object, boo
   // Between preprocessor and compiler, another program gives casts of vectors the meaning that they have on an SPU, and in C++ the spelling
   // of vectors that of the host.
   const std::string text = scratch.file("source.i"), rewritten = scratch.file("rewritten.i");
-  append(command, {"-E", source.file, "-o", text});
-  go(command);
+  Words preprocess = command;
+  append(preprocess, {"-E", source.file, "-o", text});
+  try {
+    go(preprocess);
+  } catch (const Failed&) {
+    if (!checked) explain_missing_headers(without_dependencies(command), source.file);
+    throw;
+  }
   Words rewrite{places.vector_casts.string()};
   if (is_cxx) rewrite.push_back("--c++");
   append(rewrite, {text, rewritten});

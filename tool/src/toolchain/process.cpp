@@ -70,12 +70,13 @@ int run(const Words& command, bool quiet) {
   return status_of(spawn(command, actions));
 }
 
-std::string output_of(const Words& command) {
+std::string output_of(const Words& command, bool quiet) {
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0) throw std::runtime_error("cannot make a pipe");
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_adddup2(&actions, ends[1], STDOUT_FILENO);
+  if (quiet) posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
   const pid_t child = spawn(command, actions);
   close(ends[1]);
   std::string text;

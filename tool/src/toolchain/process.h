@@ -31,7 +31,8 @@ void catch_signals();
 int run(const Words& command, bool quiet = false);
 
 /// Like run(), but returns what the program prints on standard output, without the last line's end.
-std::string output_of(const Words& command);
+/// @throws Failed  its status is not 0.
+std::string output_of(const Words& command, bool quiet = false);
 
 /// Replaces this process by another program. @throws std::runtime_error  it cannot be run.
 [[noreturn]] void become(const Words& command);

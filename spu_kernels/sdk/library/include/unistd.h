@@ -30,4 +30,18 @@ int unlink(const char* path);
 unsigned int sleep(unsigned int seconds);
 int usleep(unsigned int microseconds);
 void _exit(int status) __attribute__((noreturn));
+
+#define SC_NOT_SERVED(name) \
+  __attribute__((error(name "() is not served here: the PPU side may call it for its SPEs")))
+SC_NOT_SERVED("chdir") int chdir(const char* path);
+SC_NOT_SERVED("dup") int dup(int file);
+SC_NOT_SERVED("dup2") int dup2(int file, int as);
+SC_NOT_SERVED("fsync") int fsync(int file);
+SC_NOT_SERVED("getcwd") char* getcwd(char* to, size_t bytes);
+SC_NOT_SERVED("getpid") int getpid(void);
+SC_NOT_SERVED("link") int link(const char* from, const char* to);
+SC_NOT_SERVED("rmdir") int rmdir(const char* path);
+SC_NOT_SERVED("symlink") int symlink(const char* from, const char* to);
+SC_NOT_SERVED("truncate") int truncate(const char* path, off_t length);
+#undef SC_NOT_SERVED
 __END_DECLS

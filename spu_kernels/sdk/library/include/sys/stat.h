@@ -49,4 +49,11 @@ __BEGIN_DECLS
 int stat(const char* path, struct stat* to);
 int lstat(const char* path, struct stat* to);
 int fstat(int file, struct stat* to);
+
+#define SC_NOT_SERVED(name) \
+  __attribute__((error(name "() is not served here: the PPU side may call it for its SPEs")))
+SC_NOT_SERVED("chmod") int chmod(const char* path, mode_t mode);
+SC_NOT_SERVED("mkdir") int mkdir(const char* path, mode_t mode);
+SC_NOT_SERVED("umask") mode_t umask(mode_t mask);
+#undef SC_NOT_SERVED
 __END_DECLS
