@@ -20,8 +20,7 @@ class PointChooser {
  public:
   // In cells.
   static constexpr float kPointSpacing = 0.45f;  ///< between points of a smooth surface
-  static constexpr float kSamePoint =
-      0.1f;  ///< two points nearer than this count as one, also with different normals
+  static constexpr float kSamePoint = 0.1f;      ///< points nearer than this are one, whatever their normals
   /// Where the surface bends: how far a point may stand out beyond one that is already chosen. It is half of their distance times the angle
   /// between their normals.
   static constexpr float kBulge = 0.06f;
