@@ -82,8 +82,8 @@ class RestShape {
   // Result of a flow that was begun; null: the shape has not changed.
   std::shared_future<std::shared_ptr<const Shape>> next_;
   bool is_flowing_ = false;
-  std::shared_ptr<const Shape>
-      worn_;  // the previous shape: the thread of flows destroys it with the next flow
+  // The previous shape: the thread of flows destroys it with the next flow.
+  std::shared_ptr<const Shape> worn_;
 };
 
 extern template class RestShape<2>;

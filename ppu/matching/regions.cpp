@@ -16,8 +16,8 @@ namespace {
 /// many, and the bound is the number of particles.
 std::uint64_t least_members(const Csr& neighbours, int half_width) {
   constexpr std::size_t kNeighboursInside = 26;
-  std::vector<int> depth(neighbours.size(),
-                         half_width);  // links to the next particle that has fewer, at most half_width
+  // Links to the next particle that has fewer neighbours, at most half_width.
+  std::vector<int> depth(neighbours.size(), half_width);
   std::vector<std::uint32_t> found;
   for (std::uint32_t i = 0; i < neighbours.size(); ++i) {
     if (neighbours[i].size() >= kNeighboursInside) continue;
@@ -54,8 +54,8 @@ Csr find_regions(const Csr& neighbours, int half_width) {
                              std::to_string(kMaxRegionMembers) +
                              " entries; use a smaller half width or larger cells");
   };
-  check_members(
-      least_members(neighbours, half_width));  // refuses most lattices before it takes seconds and memory
+  // Refuses most lattices that are too large before that takes seconds and memory.
+  check_members(least_members(neighbours, half_width));
   Csr regions;
   std::vector<std::uint32_t> visited(particles, particles);  // the last centre whose search came here
   std::vector<std::uint32_t> found;
