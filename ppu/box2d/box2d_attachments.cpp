@@ -114,12 +114,13 @@ AttachmentId Box2dAttachments::add(Box2dBody& body, const Patch<2>& patch, b2Bod
   } else {
     frame = frame_in_world(full, particles);
   }
-  return add(Link{.a = &body,
-                  .rigid = rigid,
-                  .touch = touches(full),
-                  .rows = AttachmentRows<2>(full, particles, frame),
-                  .hold = {.frame = frame, .goal = frame.position},
-                  .pose = rigid != nullptr ? rigid->GetTransform() : b2Transform()});
+  Link link{.a = &body,
+            .rigid = rigid,
+            .touch = touches(full),
+            .rows = AttachmentRows<2>(full, particles, frame),
+            .hold = {.frame = frame, .goal = frame.position}};
+  if (rigid != nullptr) link.pose = rigid->GetTransform();
+  return add(std::move(link));
 }
 
 AttachmentId Box2dAttachments::add(Box2dBody& body, const Patch<2>& patch, Box2dBody& other,
@@ -131,8 +132,7 @@ AttachmentId Box2dAttachments::add(Box2dBody& body, const Patch<2>& patch, Box2d
                   .touch = touches(settings),
                   .rows = AttachmentRows<2>(settings, particles_of(patch, body.soft()),
                                             particles_of(other_patch, other.soft())),
-                  .hold = {},
-                  .pose = {}});
+                  .hold = {}});
 }
 
 AttachmentId Box2dAttachments::add(Link link) {

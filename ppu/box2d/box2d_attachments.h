@@ -87,7 +87,7 @@ class Box2dAttachments {
     bool touch = false;
     AttachmentRows<2> rows;
     HeldPlace<2> hold;
-    b2Transform pose{};  // of the rigid body, when a step last began
+    b2Transform pose{b2Vec2_zero, b2Rot(0)};  // of the rigid body, if there is one, when a step last began
   };
   /// A soft body in one step.
   struct InStep {
