@@ -201,14 +201,14 @@ void meet_rigid(spu::SolveContact& solved, const SoftContact& contact, const Con
 namespace {
 
 /// The anchor as the kernel has it. The kernel gives none for a body that sleeps: no impulse changes that.
-Anchor held_by(const ContactBody& body, const spu::SolveAnchor& there, std::uint16_t cell) {
+Anchor anchor_of(const ContactBody& body, const spu::SolveAnchor& there, std::uint16_t cell) {
   Anchor anchor;
   anchor.cell = cell;
   for (std::size_t k = 0; k < 8; ++k) {
     anchor.particle[k] = there.particle[k];
     anchor.share[k] = there.weight[k] * body.model->root_masses[there.particle[k]];
   }
-  return body.model->held(anchor);
+  return anchor;
 }
 
 }  // namespace
@@ -218,7 +218,7 @@ void hold_by_own_cells(spu::SolveContact& contact, const ContactBody& a, const C
   Vector3f carried = Vector3f::Zero();
   const auto hold = [&](spu::SolveAnchor& there, std::uint16_t& cell, const ContactBody& body, float sign) {
     if (body.asleep) return;
-    const Anchor own = held_by(body, there, cell);
+    const Anchor own = body.model->held(anchor_of(body, there, cell));
     there = as_kernels_solve_it(own, body.inverse_masses);
     cell = static_cast<std::uint16_t>(own.cell);
     mobility += own.mobility(body.inverse_masses);
@@ -240,14 +240,10 @@ void hold_pushes(SoftContact& contact, const ContactBody& a, const ContactBody* 
 void hold_pushes(spu::SolveContact& contact, const ContactBody& a, const ContactBody& b) {
   push_at_least_a_bit(contact);
   const Vector3f normal(contact.normal);
-  const auto pushed = [](const ContactBody& body, const spu::SolveAnchor& there) -> Vector3f {
-    Vector3f sum = Vector3f::Zero();
-    if (body.asleep) return sum;
-    for (std::size_t k = 0; k < 8; ++k)
-      sum += there.weight[k] * body.model->root_masses[there.particle[k]] * body.pushes[there.particle[k]];
-    return sum;
+  const auto pushed = [](const ContactBody& body, const spu::SolveAnchor& there, std::uint16_t cell) {
+    return body.asleep ? Vector3f(Vector3f::Zero()) : anchor_of(body, there, cell).of(body.pushes);
   };
-  const Vector3f slide = pushed(a, contact.a) - pushed(b, contact.b);
+  const Vector3f slide = pushed(a, contact.a, contact.cell_a) - pushed(b, contact.b, contact.cell_b);
   Vector3f::Map(contact.carried) -= slide - normal.dot(slide) * normal;
 }
 
